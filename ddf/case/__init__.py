@@ -1,0 +1,55 @@
+"""Case files: typed sections, loading with all faults at once, presets and the reference of all keys."""
+
+from ddf.case.load import case_from_dict, load_case, resolved_toml
+from ddf.case.presets import (
+    PRESETS,
+    hyperelastic_material,
+    preset_source,
+    resolve_gap_mm,
+    resolve_material,
+    woven_material,
+)
+from ddf.case.schema import (
+    Breakpoints,
+    Case,
+    Diaphragms,
+    Frame,
+    Friction,
+    HyperelasticMaterial,
+    OgdenTerm,
+    Output,
+    Ply,
+    Process,
+    ShearTable,
+    Solver,
+    Stage,
+    Tool,
+    WovenMaterial,
+)
+
+__all__ = [
+    "PRESETS",
+    "Breakpoints",
+    "Case",
+    "Diaphragms",
+    "Frame",
+    "Friction",
+    "HyperelasticMaterial",
+    "OgdenTerm",
+    "Output",
+    "Ply",
+    "Process",
+    "ShearTable",
+    "Solver",
+    "Stage",
+    "Tool",
+    "WovenMaterial",
+    "case_from_dict",
+    "hyperelastic_material",
+    "load_case",
+    "preset_source",
+    "resolve_gap_mm",
+    "resolve_material",
+    "resolved_toml",
+    "woven_material",
+]

@@ -1,0 +1,77 @@
+"""Settings of the explicit solver."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from ddf.case.base import Section
+
+DEFAULT_MASS_SCALING = 10.0
+
+
+class Solver(Section):
+    """Time step, damping, contact stiffness and the limits that stop a run. All inferred but mass damping."""
+
+    mass_scaling: float | None = Field(
+        default=None,
+        ge=1,
+        le=1e6,
+        description="Factor on all masses (inferred); left out without target_step_s: 10. "
+        "Either this or target_step_s.",
+    )
+    target_step_s: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e-2,
+        description="Stable step to reach by adding mass where needed [s]. Either this or mass_scaling.",
+    )
+    mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
+    fibre_damping: float = Field(
+        default=0.1,
+        ge=0,
+        le=2,
+        description="Damping along the fibres, fraction of critical of the highest fibre mode.",
+    )
+    step_safety: float = Field(default=0.8, gt=0, le=1, description="Step as a fraction of the stable one.")
+    outer_step_s: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e-2,
+        description="Step of everything but the fibres' tension [s]; left out: by the solver's rule.",
+    )
+    inner_steps: int | None = Field(
+        default=None,
+        ge=1,
+        le=1000,
+        description="Fibre steps in one outer step; left out: by the solver's rule.",
+    )
+    contact_stiffness_N_mm3: float = Field(
+        default=2.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
+    )
+    tool_contact_stiffness_N_mm3: float = Field(
+        default=10.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+    )
+    contact_damping: float = Field(
+        default=0.33, ge=0, le=2, description="Contact damping, fraction of critical."
+    )
+    threads: int | None = Field(
+        default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
+    )
+    energy_error_limit_percent: float = Field(
+        default=10.0,
+        gt=0,
+        le=1000,
+        description="Energy error beyond which the run stops with exit code 3 [%].",
+    )
+    check_interval_steps: int = Field(
+        default=50, ge=1, le=1_000_000, description="Outer steps between two checks of energy and stability."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_scaling(cls, raw: Any) -> Any:
+        if isinstance(raw, dict) and raw.get("mass_scaling") is None and raw.get("target_step_s") is None:
+            return raw | {"mass_scaling": DEFAULT_MASS_SCALING}
+        return raw

@@ -1,0 +1,22 @@
+"""Coulomb friction by an elastic spring to an anchor.
+
+The trial traction is  t = k s + c v  with s the way from the anchor and v the slip rate. Where |t| > mu N the
+traction is scaled back to mu N and the anchor follows, so that the spring carries mu N again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(inline="always")
+def coulomb(trial, limit):
+    """Share of the trial force [N] that friction can carry: min(1, limit / trial)."""
+    return limit / trial if trial > limit else 1.0
+
+
+@njit(inline="always")
+def length(x, y, z):
+    """Length of a vector."""
+    return np.sqrt(x * x + y * y + z * z)

@@ -1,0 +1,174 @@
+"""The model, the state, and the one glossary of names, shapes and units that the solver uses.
+
+Units are consistent: mm, tonne, s, N, MPa (so energies are N mm = mJ).
+
+Every sheet (ply or diaphragm) is a logically rectangular grid of rows x cols nodes. Sheets lie one behind
+the other in flat pools; `nodes[k]` is the first node of sheet k.
+
+============== ===================== =========================================================================
+name           shape                 meaning [unit]
+============== ===================== =========================================================================
+x, v, f        pool (3 N,)           position [mm], velocity [mm/s], slow force [N]; sheet k is the slice
+                                     3*node : 3*(node + rows*cols) seen as (3, rows, cols)
+green1, green2 pool (N,)             last lambda^2 - 1 of the bar from a node to its next one along family 1, 2
+place          (2, P)                where a contact slave stands on its master: grid coordinates (u, v)
+anchor         (2, P)                where its friction spring is anchored, same coordinates
+tool_anchor    (3, Q)                anchors of the tool's contact points, tool frame [mm]
+ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
+row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)
+col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
+cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
+bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
+outer step     dt                    one evaluation of all slow forces [s]
+inner step     dt / inner            one step of fibre tension and drift [s]
+============== ===================== =========================================================================
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+PLY, DIAPHRAGM = 0, 1
+
+#: columns of the ledger: work done on a sheet and energy that left the sheets, per block of rows
+(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING) = range(7)
+LEDGER = 7
+#: columns of the springs: energy stored now in the contacts of a block (normal, tangential; tool likewise)
+(NORMAL_SPRING, TANGENTIAL_SPRING, TOOL_NORMAL_SPRING, TOOL_TANGENTIAL_SPRING) = range(4)
+SPRINGS = 4
+#: columns of the schedule, one row an outer step
+(TIME, PRESSURE_TOP, PRESSURE_BOTTOM, TOOL_Z, TOOL_SPEED, DAMPING) = range(6)
+SCHEDULE = 6
+
+SHEET = np.dtype(
+    [
+        ("kind", np.int64),
+        ("node", np.int64),
+        ("rows", np.int64),
+        ("cols", np.int64),
+        ("line", np.int64),  # first entry of a diaphragm's reference cell sizes in `lines`
+        ("shear", np.int64),  # row of `shear_tables`
+        ("face", np.int64),  # diaphragm: column of the schedule with its net pressure
+        ("a1", np.float64),
+        ("a2", np.float64),
+        ("eh1", np.float64),  # membrane modulus of family 1 [N/mm]
+        ("eh2", np.float64),
+        ("viscosity1", np.float64),  # axial viscosity of family 1 [N s/mm]
+        ("viscosity2", np.float64),
+        ("bend1", np.float64),  # bending rigidity along family 1 [N mm]
+        ("bend2", np.float64),
+        ("bend_in_plane", np.float64),
+        ("thickness", np.float64),
+        ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
+        ("hourglass", np.float64),  # diaphragm: stabilisation modulus x thickness [N/mm]
+    ],
+    align=True,
+)
+
+BLOCK = np.dtype(
+    [
+        ("sheet", np.int64),
+        ("low", np.int64),  # rows low .. high-1
+        ("high", np.int64),
+    ],
+    align=True,
+)
+
+PAIR = np.dtype(
+    [
+        ("slave", np.int64),
+        ("master", np.int64),
+        ("first", np.int64),  # first entry of the slave's nodes in `place`
+        ("buffer", np.int64),  # first entry in the master force buffers
+        ("span", np.int64),  # first entry in the buffers' row spans
+        ("sign", np.float64),  # +1: slave above the master, -1: below
+        ("offset", np.float64),  # half thicknesses [mm]
+        ("friction", np.float64),
+        ("stiffness", np.float64),  # [N/mm3]
+        ("damping", np.float64),  # [N s/mm3]
+    ],
+    align=True,
+)
+
+
+class Model(NamedTuple):
+    """All that does not change during a run."""
+
+    sheets: np.ndarray  # SHEET
+    blocks: np.ndarray  # BLOCK, sheet by sheet, rows ascending
+    pairs: np.ndarray  # PAIR
+    mass: np.ndarray  # (N,) [tonne], scaled
+    inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node
+    area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
+    row_span: np.ndarray  # (rows of all sheets, 2) first and last+1 node that exists
+    row_first: np.ndarray  # (sheets,) first row of a sheet in row_span
+    bar1: np.ndarray
+    bar2: np.ndarray
+    cell: np.ndarray  # (N,) reference area of a cell [mm2]
+    triple1: np.ndarray  # (N,) area of the bending triple centred on a node, along family 1 [mm2]
+    triple2: np.ndarray
+    lines: np.ndarray  # reference sizes of diaphragm cells: rows then cols [mm]
+    shear_tables: np.ndarray  # (laws, intervals, 5)
+    ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
+    exposed: np.ndarray  # (P,) bool: slave nodes a pair has to follow
+    tool: np.ndarray  # (nx, ny, nz, 4) float32 signed distance and gradient
+    tool_origin: np.ndarray  # (3,)
+    tool_spacing: float
+    tool_sheet: int  # sheet that meets the tool, -1 without a tool
+    tool_offset: float  # half thickness of that sheet [mm]
+    tool_stiffness: float
+    tool_damping: float
+    tool_friction: float
+    dt: float
+    inner: int
+
+
+class State(NamedTuple):
+    """All that a restart needs, besides time and step number (in `clock`)."""
+
+    x: np.ndarray
+    v: np.ndarray
+    f: np.ndarray
+    green1: np.ndarray
+    green2: np.ndarray
+    place: np.ndarray
+    anchor: np.ndarray
+    tool_anchor: np.ndarray
+    ledger: np.ndarray
+    springs: np.ndarray  # (blocks, SPRINGS)
+    volume: np.ndarray  # (blocks, 2): last volume term and net pressure of a block
+    fibre_damping: np.ndarray  # (sheets,) dissipated by axial viscosity [N mm]
+    clock: np.ndarray  # (2,): step number, time [s]
+
+
+@njit(inline="always")
+def vectors(pool, sheet):
+    """Sheet's slice of a vector pool as (3, rows, cols)."""
+    n = sheet.rows * sheet.cols
+    return pool[3 * sheet.node : 3 * (sheet.node + n)].reshape((3, sheet.rows, sheet.cols))
+
+
+@njit(inline="always")
+def scalars(pool, sheet):
+    """Sheet's slice of a scalar pool as (rows, cols)."""
+    n = sheet.rows * sheet.cols
+    return pool[sheet.node : sheet.node + n].reshape((sheet.rows, sheet.cols))
+
+
+def sheet_vectors(model: Model, pool: np.ndarray, k: int) -> np.ndarray:
+    """View of sheet k in a vector pool, shape (3, rows, cols)."""
+    s = model.sheets[k]
+    n = int(s["rows"] * s["cols"])
+    a = int(s["node"])
+    return pool[3 * a : 3 * (a + n)].reshape(3, int(s["rows"]), int(s["cols"]))
+
+
+def sheet_scalars(model: Model, pool: np.ndarray, k: int) -> np.ndarray:
+    """View of sheet k in a scalar pool, shape (rows, cols)."""
+    s = model.sheets[k]
+    n = int(s["rows"] * s["cols"])
+    a = int(s["node"])
+    return pool[a : a + n].reshape(int(s["rows"]), int(s["cols"]))
