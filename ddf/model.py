@@ -139,7 +139,6 @@ class State(NamedTuple):
     tool_anchor: np.ndarray
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
-    volume: np.ndarray  # (blocks, 2): last volume term and net pressure of a block
     fibre_damping: np.ndarray  # (sheets,) dissipated by axial viscosity [N mm]
     clock: np.ndarray  # (2,): step number, time [s]
 

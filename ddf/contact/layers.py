@@ -6,6 +6,7 @@ step tracks it. With N_k the patch's shape functions there, tangents S_1, S_2, n
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     place  r^a = contravariant components of r (metric of S_1, S_2): the Newton step
     slip   s = (place - anchor)^a S_a;        friction spring of stiffness K A, Coulomb limit mu N
+    rate   s' = (v_s - N_k v_k)_t + d n.(N_k,b v_k) S^b: the normal turns with the master, and r with it
 
 The force f on the slave is balanced on the master's nodes by
 
@@ -117,21 +118,26 @@ def layer_forces(xs, vs, fs, area, xm, vm, cell, place, anchor, exposed, buffer,
             w00, w10, w01, w11 = (1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b
             k = pair.stiffness * w
             c = pair.damping * w
-            sx = vs[0, i, j] - (
-                w00 * vm[0, p, q] + w10 * vm[0, p + 1, q] + w01 * vm[0, p, q + 1] + w11 * vm[0, p + 1, q + 1]
-            )
-            sy = vs[1, i, j] - (
-                w00 * vm[1, p, q] + w10 * vm[1, p + 1, q] + w01 * vm[1, p, q + 1] + w11 * vm[1, p + 1, q + 1]
-            )
-            sz = vs[2, i, j] - (
-                w00 * vm[2, p, q] + w10 * vm[2, p + 1, q] + w01 * vm[2, p, q + 1] + w11 * vm[2, p + 1, q + 1]
-            )
+            sx, sy, sz, nu, nv = 0.0, 0.0, 0.0, 0.0, 0.0
+            for e in range(3):
+                v00, v10, v01, v11 = vm[e, p, q], vm[e, p + 1, q], vm[e, p, q + 1], vm[e, p + 1, q + 1]
+                slip = vs[e, i, j] - (w00 * v00 + w10 * v10 + w01 * v01 + w11 * v11)
+                ne = nx if e == 0 else (ny if e == 1 else nz)
+                nu += ne * ((1 - b) * (v10 - v00) + b * (v11 - v01))
+                nv += ne * ((1 - a) * (v01 - v00) + a * (v11 - v10))
+                if e == 0:
+                    sx = slip
+                elif e == 1:
+                    sy = slip
+                else:
+                    sz = slip
             rate = sx * nx + sy * ny + sz * nz
+            ou, ov = d * (gvv * nu - guv * nv) * inv, d * (guu * nv - guv * nu) * inv
+            sx += ou * ux + ov * vx - rate * nx
+            sy += ou * uy + ov * vy - rate * ny
+            sz += ou * uz + ov * vz - rate * nz
             fn = max(0.0, -k * gap - c * sign * rate)
             tu, tv = u - anchor[0, i, j], v - anchor[1, i, j]
-            sx -= rate * nx
-            sy -= rate * ny
-            sz -= rate * nz
             tx = -k * (tu * ux + tv * vx) - c * sx
             ty = -k * (tu * uy + tv * vy) - c * sy
             tz = -k * (tu * uz + tv * vz) - c * sz

@@ -152,7 +152,7 @@ def _row_span(active: NDArray[np.bool_]) -> IntArray:
     """(n, 2): first and last+1 active node of each row, 0, 0 if none."""
     first = active.argmax(axis=1)
     last = active.shape[1] - active[:, ::-1].argmax(axis=1)
-    return np.where(active.any(axis=1)[:, None], np.stack([first, last], axis=1), 0).astype(np.int64)
+    return np.where(active.any(axis=1, keepdims=True), np.stack([first, last], axis=1), 0).astype(np.int64)
 
 
 def _fabric_cells(points: FloatArray, fraction: FloatArray) -> IntArray:

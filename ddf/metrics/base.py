@@ -6,44 +6,33 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy import ndimage
 
-from ddf.metrics.surface import Array, Distance, PlySurface, fill_inactive, gap_field
+from ddf.metrics.surface import Array, PlySurface, fill_inactive, gap_field
 
 DEGREE = 5  # of the fitted base in each grid direction
 PASSES = 15  # of the robust weighting
-EPSILON_MM = 0.25  # step of the central differences of the distance
+NORMAL_SMOOTHING_MM = 8.0  # of the sheet whose normal counts as outward
 
 
 @dataclass(frozen=True)
 class HeightField:
-    """Height h of each node [mm] (n, m) and the lattice it belongs to, both filled over inactive nodes."""
+    """Height of each node and the lattice it belongs to, both filled over inactive nodes."""
 
-    h: Array
+    h: Array  # [mm] (n, m)
     x: Array  # [mm] (3, n, m)
-    normal: Array | None  # (3, n, m) outward normal of the fitted base; None with a distance function
-    distance: Distance | None
-
-    def outward(self, points: Array, nodes: Array) -> Array:
-        """Unit normals (k, 3) away from the tool at points (k, 3) nearest to grid coordinates (k, 2).
-
-        The gradient of the distance by central differences, or the fitted base's normal.
-        """
-        if self.distance is None:
-            assert self.normal is not None
-            i, j = np.rint(nodes).astype(int).T
-            return np.ascontiguousarray(self.normal[:, i, j].T)
-        steps = EPSILON_MM * np.eye(3)
-        columns = [self.distance(points + step) - self.distance(points - step) for step in steps]
-        return _unit(np.stack(columns, axis=1), axis=1)
+    normal: Array  # (3, n, m) unit normal of the smoothed sheet, away from the tool
 
 
 def height_field(surface: PlySurface) -> HeightField:
-    """Height h = distance - offset; with no distance, h = (x - base).n over a robustly fitted smooth base."""
+    """Height h = distance - offset; with no distance, over a base fitted to the sheet, h = (x - base).n."""
     x = fill_inactive(surface.x, surface.active)
+    sigma = [0.0, *(NORMAL_SMOOTHING_MM / a for a in surface.spacing)]
+    normal = _normal(ndimage.gaussian_filter(x, sigma, mode="nearest"))
     if surface.distance is not None:
-        return HeightField(fill_inactive(gap_field(surface), surface.active), x, None, surface.distance)
-    base, normal = _fit_base(x, surface)
-    return HeightField(((x - base) * normal).sum(axis=0), x, normal, None)
+        return HeightField(fill_inactive(gap_field(surface), surface.active), x, normal)
+    base, base_normal = _fit_base(x, surface)
+    return HeightField(((x - base) * base_normal).sum(axis=0), x, normal)
 
 
 def _fit_base(x: Array, surface: PlySurface) -> tuple[Array, Array]:

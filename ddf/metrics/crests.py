@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ddf.metrics.profiles import AMPLITUDE, SAGITTA, SHIFT, Sections, sample_cubic
+from ddf.metrics.profiles import AMPLITUDE, SHIFT, Sections, sample_cubic
 from ddf.metrics.surface import Array, Mask
 
 SHIFT_SMOOTHING = 2.0  # points
@@ -23,20 +23,9 @@ class Crest:
     length_mm: float
 
 
-def is_wrinkle(sections: Sections, threshold_mm: float, convexity: float) -> Mask:
-    """Sections with A > threshold and a sagitta of at least `convexity` A/2: the sheet itself is folded.
-
-    Over a straight flank the sagitta of the crest over the chord at half height is A/2; a sheet that spans a
-    hollow of the tool has a peak of the height there, but is flat or hollow itself: sagitta <= 0.
-    """
-    amplitude, sagitta = sections.values[:, AMPLITUDE], sections.values[:, SAGITTA]
-    return np.asarray((amplitude > threshold_mm) & (sagitta >= 0.5 * convexity * amplitude))
-
-
 def select_crests(
     lines: list[Array],
     sections: Sections,
-    good: Mask,
     x: Array,
     *,
     step_mm: float,
@@ -46,10 +35,12 @@ def select_crests(
 ) -> tuple[list[Crest], Array]:
     """Crests of at least the least length, and the heights of their sections on the nodes (n, m) [mm].
 
-    Lines are taken in the order of their volume. A stretch within the half-height zone of a wrinkle already
-    taken belongs to that wrinkle. Faults no longer than `gap_mm` do not interrupt a crest.
+    A section counts where its amplitude exceeds the threshold. Lines are taken in the order of their
+    strength, the sum of their amplitudes. A stretch within the half-height zone of a wrinkle already taken
+    belongs to that wrinkle. Faults no longer than `gap_mm` do not interrupt a crest.
     """
     starts = np.concatenate([[0], np.cumsum([len(line) for line in lines])])
+    good = sections.values[:, AMPLITUDE] > threshold_mm
     weight = np.where(good, sections.values[:, AMPLITUDE], 0.0)
     strength = np.add.reduceat(weight, starts[:-1])
     height = np.zeros(x.shape[1:])

@@ -1,4 +1,4 @@
-"""Cross-sections of the sheet over ridge points: base between the feet, height, width, convexity, area.
+"""Cross-sections of the sheet over ridge points: base between the feet, height, width, area.
 
 Each section follows a straight material line across the crest, so that an overhanging or closed fold is
 single-valued along it; widths and areas are measured in space, in the plane across the crest.
@@ -15,7 +15,7 @@ from scipy import ndimage
 from ddf.metrics.base import HeightField
 from ddf.metrics.surface import Array, PlySurface, inside_outline
 
-AMPLITUDE, WIDTH, ARC, SAGITTA, AREA, SHIFT, LEFT, RIGHT = range(8)
+AMPLITUDE, WIDTH, ARC, AREA, SHIFT = range(5)
 METRIC_SMOOTHING_MM = 2.0
 
 
@@ -26,7 +26,7 @@ class Sections:
     places: Array  # [mm] (p,) distance along the material line from the crest
     uv: Array  # (k, p, 2) grid coordinates of the samples
     height: Array  # [mm] (k, p) height over the base line between the feet; 0 beyond them
-    values: Array  # (k, 8) columns AMPLITUDE.. [mm], [mm2]; amplitude 0 where there is no crest
+    values: Array  # (k, 5) columns AMPLITUDE.. [mm], [mm2]; 0 where there is no fold
     tangent: Array  # (k, 3) unit crest direction in space
     grid_direction: Array  # (k, 2) grid direction per mm across
     fibre_angles: Array  # [rad] (k, 2) signed angle from each family to the crest, in (-pi/2, pi/2]
@@ -50,7 +50,8 @@ def cut_sections(
     heights = sample_cubic(field.h[None], samples)[..., 0]
     points = np.ascontiguousarray(sample_cubic(field.x, samples))
     tangent = np.vstack([_unit_rows(_gradient(p)) for p in _split(points[:, count], lines)])
-    normal = field.outward(points[:, count], uv)
+    i, j = np.rint(uv).astype(int).T
+    normal = field.normal[:, i, j].T
     normal = _unit_rows(normal - (normal * tangent).sum(axis=1)[:, None] * tangent)
     window = max(round(1.5 * min(surface.spacing) / (places[1] - places[0])), 2)
     height, values = _measure(places, heights, points, valid, tangent, normal, window, threshold_mm)
@@ -68,74 +69,62 @@ def _measure(
     window: int,
     threshold: float,
 ) -> tuple[Array, Array]:
-    """Measure every section; (k, p) heights over the base and (k, 8) values."""
-    height = np.zeros(heights.shape)
-    values = np.zeros((len(heights), 8))
+    """Measure every section: (k, p) heights over its base and (k, 5) values; 0 where there is no fold.
+
+    Amplitude: the less of two reliefs, of the height over the tool and of the sheet itself along its normal.
+    A sheet that follows a convex tool has no relief in the first, one that spans a hollow none in the second.
+    """
+    above = np.zeros(heights.shape)
+    values = np.zeros((len(heights), 5))
     for k in range(len(heights)):
-        measure_section(
-            places,
-            heights[k],
-            points[k],
-            valid[k],
-            tangent[k],
-            normal[k],
-            window,
-            threshold,
-            height[k],
-            values[k],
-        )
-    return height, values
+        own = points[k] @ normal[k]
+        crest, over = _relief(places, heights[k], valid[k], window, threshold)
+        crest_own, over_own = _relief(places, own, valid[k], window, threshold)
+        if crest < 0 or crest_own < 0:
+            continue
+        if over_own[crest_own] < over[crest]:
+            crest, over = crest_own, over_own
+        above[k] = over
+        values[k, 0] = over[crest]
+        values[k, 4] = places[crest]
+        _span(over, crest, points[k], tangent[k], normal[k], values[k])
+    return above, values
 
 
 @njit(cache=True)
-def measure_section(
-    places: Array,
-    h: Array,
-    points: Array,
-    valid: np.ndarray,
-    tangent: Array,
-    normal: Array,
-    window: int,
-    threshold: float,
-    above: Array,
-    values: Array,
-) -> None:
-    """Measure one section into `above` (p,) and `values` (8,); both stay 0 where it has no crest.
-
-    Amplitude A = h(crest) - base(crest); width and arc between the first points at A/2 on either flank, in
-    space less what lies along the crest; sagitta of the crest over the chord of these points along the
-    outward normal; area = integral of height by travel in space across the crest, from foot to foot.
-    """
+def _relief(places: Array, h: Array, valid: np.ndarray, window: int, threshold: float) -> tuple[int, Array]:
+    """Sample of the crest (-1: none) and heights (p,) over the base line between the feet, 0 beyond them."""
+    above = np.zeros(len(h))
     crest = _summit(h, valid, window)
     if crest < 0:
-        return
+        return -1, above
     first, last = _flank(h, valid, crest, -1, threshold), _flank(h, valid, crest, 1, threshold)
     left, right = _feet(places, h, first, crest, last)
     if left == crest or right == crest:
-        return
+        return -1, above
     slope = (h[right] - h[left]) / (places[right] - places[left])
     for k in range(left, right + 1):
         above[k] = max(h[k] - h[left] - slope * (places[k] - places[left]), 0.0)
-    amplitude = above[crest]
-    if amplitude <= 0.0:
-        return
-    low, arc_low = _half_point(above, points, tangent, crest, -1, 0.5 * amplitude)
-    high, arc_high = _half_point(above, points, tangent, crest, 1, 0.5 * amplitude)
+    return (crest if above[crest] > 0.0 else -1), above
+
+
+@njit(cache=True)
+def _span(above: Array, crest: int, points: Array, tangent: Array, normal: Array, values: Array) -> None:
+    """Width, arc and area of a section into values[1:4].
+
+    Width and arc between the first points at half height on either flank, in space less what lies along the
+    crest; area = integral of height by travel in space across the crest.
+    """
+    low, arc_low = _half_point(above, points, tangent, crest, -1, 0.5 * above[crest])
+    high, arc_high = _half_point(above, points, tangent, crest, 1, 0.5 * above[crest])
     chord = high - low
-    across = chord - np.dot(chord, tangent) * tangent
-    foot = low + arc_low / max(arc_low + arc_high, 1e-300) * chord
+    values[1] = np.sqrt(max(np.dot(chord, chord) - np.dot(chord, tangent) ** 2, 0.0))
+    values[2] = arc_low + arc_high
     side = np.cross(normal, tangent)
     area = 0.0
-    for k in range(left, right):
+    for k in range(len(above) - 1):
         area += 0.5 * (above[k] + above[k + 1]) * np.dot(points[k + 1] - points[k], side)
-    values[0] = amplitude
-    values[1] = np.sqrt(np.dot(across, across))
-    values[2] = arc_low + arc_high
-    values[3] = np.dot(points[crest] - foot, normal)
-    values[4] = abs(area)
-    values[5] = places[crest]
-    values[6] = places[left]
-    values[7] = places[right]
+    values[3] = abs(area)
 
 
 @njit(cache=True)

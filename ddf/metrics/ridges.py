@@ -1,7 +1,10 @@
-"""Ridge lines of a height field on the lattice: found where the height is largest across, and followed along.
+"""Ridge lines of the height over the tool: found where it is largest across, and followed along.
 
-A ridge point has a negative smallest eigenvalue c of the height's Hessian, with eigenvector e across the
-ridge, and no slope across it: grad h . e = 0 (Haralick; Steger, IEEE Trans. PAMI 20 (1998) 113). All in
+The direction e across a ridge makes the larger of two curvatures least: that of the height, h_ee, and that of
+the sheet itself, x_ee.n with n its outward normal. A fold is strongly negative in both. A rounded edge of
+the tool under a conforming sheet is so in the second alone, a hollow corner that the sheet spans in the first
+alone (the distance to the nearer of two walls has a crest half-way between them): neither leads a line
+astray. On the ridge the slope h_e is zero (after Steger, IEEE Trans. PAMI 20 (1998) 113). All in
 material coordinates (mm along the fibres), so a fold may overhang in plan.
 """
 
@@ -11,18 +14,20 @@ import numpy as np
 from numba import njit
 from scipy import ndimage
 
+from ddf.metrics.base import HeightField
 from ddf.metrics.surface import Array, Mask
 
 LOOK_BACK_MM = 4.0  # length over which a line may not turn sharply
 RATE_PER_MM = 0.2  # of taking on a new direction
 HOLD_MM = 3.0
+ANGLES = 24  # directions tried across a ridge
 # fourth order: second-order errors differ with direction and bend the ends of oblique ridges
 FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)
 SECOND = (-1 / 12, 16 / 12, -30 / 12, 16 / 12, -1 / 12)
 
 
 def trace_ridges(
-    h: Array,
+    field: HeightField,
     domain: Mask,
     spacing: tuple[float, float],
     smoothing_mm: float,
@@ -30,41 +35,44 @@ def trace_ridges(
 ) -> list[Array]:
     """Ridge lines as polylines (k, 2) in grid coordinates, strongest first, k >= 3.
 
-    h (n, m) [mm] is smoothed by a Gaussian of `smoothing_mm`; ridges start where the curvature across is
-    below -2 `curvature_per_mm` and are followed both ways until it is above -`curvature_per_mm`, the
-    domain (n-1, m-1 cells) ends, the line turns sharply or meets a line already traced.
+    Height and positions are smoothed by a Gaussian of `smoothing_mm`. Ridges start where the curvature
+    across is below -2 `curvature_per_mm` and are followed both ways until it is above -`curvature_per_mm`,
+    the domain (n-1, m-1 cells) ends, the line turns sharply or meets a line already traced.
     """
-    fields = _derivatives(h, spacing, smoothing_mm)
+    fields = _derivatives(field, spacing, smoothing_mm)
     cells = np.ascontiguousarray(domain)
     seeds = _seeds(fields, cells, spacing, 2 * curvature_per_mm)
-    taken = np.zeros(h.shape, dtype=np.bool_)
+    taken = np.zeros(field.h.shape, dtype=np.bool_)
     lines: list[Array] = []
     step = 0.5 * min(spacing)
     for u, v in seeds:
         if taken[round(u), round(v)]:
             continue
-        halves = []
-        for sign in (1.0, -1.0):
-            start = np.array([u, v])
-            halves.append(
-                _follow(fields, cells, taken, start, np.array(spacing), sign, step, curvature_per_mm)
-            )
-        line = np.vstack([halves[1][::-1], halves[0][1:]])
+        place = (fields, cells, taken, np.array([u, v]), np.array(spacing))
+        ahead, behind = (_follow(*place, sign, step, curvature_per_mm) for sign in (1.0, -1.0))
+        line = np.vstack([behind[::-1], ahead[1:]])
         _take(taken, line)
         if len(line) >= 3:
             lines.append(line)
     return lines
 
 
-def _derivatives(h: Array, spacing: tuple[float, float], smoothing_mm: float) -> Array:
-    """(5, n, m): h_u, h_v, h_uu, h_uv, h_vv of the smoothed height, per mm along the fibres."""
+def _derivatives(field: HeightField, spacing: tuple[float, float], smoothing_mm: float) -> Array:
+    """(8, n, m): h_u, h_v, h_uu, h_uv, h_vv, then x_uu.n, x_uv.n, x_vv.n, smoothed, per mm of fibre."""
+    hu, hv, *height = _smooth_derivatives(field.h, spacing, smoothing_mm)
+    bent = np.stack([_smooth_derivatives(part, spacing, smoothing_mm)[2:] for part in field.x])
+    return np.stack([hu, hv, *height, *np.einsum("cdij,cij->dij", bent, field.normal)])
+
+
+def _smooth_derivatives(values: Array, spacing: tuple[float, float], smoothing_mm: float) -> Array:
+    """First (u, v) and second (uu, uv, vv) derivatives of smoothed values (n, m), as (5, n, m)."""
     sigma = [max(smoothing_mm / a, 1.0) for a in spacing]
-    smooth = ndimage.gaussian_filter(h, sigma, mode="nearest")
-    hu = _differ(smooth, FIRST, 0) / spacing[0]
-    hv = _differ(smooth, FIRST, 1) / spacing[1]
-    huu = _differ(smooth, SECOND, 0) / spacing[0] ** 2
-    hvv = _differ(smooth, SECOND, 1) / spacing[1] ** 2
-    return np.stack([hu, hv, huu, _differ(hu, FIRST, 1) / spacing[1], hvv])
+    smooth = ndimage.gaussian_filter(values, sigma, mode="nearest")
+    du = _differ(smooth, FIRST, 0) / spacing[0]
+    dv = _differ(smooth, FIRST, 1) / spacing[1]
+    duu = _differ(smooth, SECOND, 0) / spacing[0] ** 2
+    dvv = _differ(smooth, SECOND, 1) / spacing[1] ** 2
+    return np.stack([du, dv, duu, _differ(du, FIRST, 1) / spacing[1], dvv])
 
 
 def _differ(values: Array, weights: tuple[float, ...], axis: int) -> Array:
@@ -74,34 +82,50 @@ def _differ(values: Array, weights: tuple[float, ...], axis: int) -> Array:
 
 def _seeds(fields: Array, cells: Mask, spacing: tuple[float, float], curvature: float) -> Array:
     """Ridge points near nodes, (k, 2) grid coordinates, most curved first."""
-    hu, hv, huu, huv, hvv = fields
-    mean, half = 0.5 * (huu + hvv), np.hypot(0.5 * (huu - hvv), huv)
-    least = mean - half
-    angle = 0.5 * np.arctan2(-2 * huv, hvv - huu)  # eigenvector (cos, sin) of the least eigenvalue
-    eu, ev = np.cos(angle), np.sin(angle)
-    offset = -(hu * eu + hv * ev) / np.where(least < 0, least, -1e-300)
-    du, dv = offset * eu / spacing[0], offset * ev / spacing[1]
-    inner = np.zeros(hu.shape, dtype=bool)
+    bend, du, dv = _node_ridges(fields, np.array(spacing), -curvature)
+    n, m = bend.shape
+    inner = np.zeros((n, m), dtype=bool)
     inner[:-1, :-1] |= cells
     inner[1:, 1:] |= cells
-    found = inner & (least < -curvature) & (np.abs(du) <= 0.6) & (np.abs(dv) <= 0.6)
-    i, j = np.nonzero(found)
-    order = np.argsort(least[i, j], kind="stable")
-    n, m = hu.shape
+    i, j = np.nonzero(inner & (bend < 0))
+    order = np.argsort(bend[i, j], kind="stable")
     u = np.clip(i + du[i, j], 0, n - 1)[order]
     v = np.clip(j + dv[i, j], 0, m - 1)[order]
     return np.stack([u, v], axis=1)
 
 
 @njit(cache=True)
+def _node_ridges(fields: Array, spacing: Array, limit: float) -> tuple[Array, Array, Array]:
+    """Curvature across and offset to the ridge (grid steps) of nodes within 0.6 steps of one; else 0."""
+    n, m = fields.shape[1:]
+    bend, du, dv = np.zeros((n, m)), np.zeros((n, m)), np.zeros((n, m))
+    for i in range(n):
+        for j in range(m):
+            d = fields[:, i, j]
+            # the least eigenvalue of the height bounds the curvature: no search where it is small
+            if 0.5 * (d[2] + d[4]) - np.hypot(0.5 * (d[2] - d[4]), d[3]) > limit:
+                continue
+            curved, tu, tv = _along(d)
+            if curved > limit:
+                continue
+            eu, ev = -tv, tu
+            second = d[2] * eu * eu + 2 * d[3] * eu * ev + d[4] * ev * ev
+            offset = -(d[0] * eu + d[1] * ev) / second
+            ou, ov = offset * eu / spacing[0], offset * ev / spacing[1]
+            if abs(ou) <= 0.6 and abs(ov) <= 0.6:
+                bend[i, j], du[i, j], dv[i, j] = curved, ou, ov
+    return bend, du, dv
+
+
+@njit(cache=True)
 def _derivatives_at(fields: Array, u: float, v: float) -> Array:
-    """The five derivatives at grid coordinates (u, v), bilinear."""
+    """The eight derivatives at grid coordinates (u, v), bilinear."""
     n, m = fields.shape[1:]
     i = min(max(int(u), 0), n - 2)
     j = min(max(int(v), 0), m - 2)
     s, t = u - i, v - j
-    d = np.empty(5)
-    for f in range(5):
+    d = np.empty(8)
+    for f in range(8):
         low = (1 - s) * fields[f, i, j] + s * fields[f, i + 1, j]
         high = (1 - s) * fields[f, i, j + 1] + s * fields[f, i + 1, j + 1]
         d[f] = (1 - t) * low + t * high
@@ -109,10 +133,26 @@ def _derivatives_at(fields: Array, u: float, v: float) -> Array:
 
 
 @njit(cache=True)
-def _along(d: Array) -> tuple[float, float]:
-    """Unit direction along the ridge: across the eigenvector of the Hessian's least eigenvalue."""
-    angle = 0.5 * np.arctan2(-2 * d[3], d[4] - d[2])
-    return -np.sin(angle), np.cos(angle)
+def _along(d: Array) -> tuple[float, float, float]:
+    """Curvature across the ridge, max(h_ee, x_ee.n) at its least over e, and the unit direction along it."""
+    step = np.pi / ANGLES
+    value = np.empty(ANGLES)
+    best = 0
+    for k in range(ANGLES):
+        value[k] = _larger_curvature(d, k * step)
+        if value[k] < value[best]:
+            best = k
+    low, high = value[best - 1], value[(best + 1) % ANGLES]  # of period pi: -1 is the last
+    bow = low + high - 2 * value[best]
+    angle = (best + (0.5 * (low - high) / bow if bow > 0.0 else 0.0)) * step
+    return _larger_curvature(d, angle), -np.sin(angle), np.cos(angle)
+
+
+@njit(cache=True)
+def _larger_curvature(d: Array, angle: float) -> float:
+    """The larger of the curvatures of height and sheet in the direction e = (cos, sin)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return max(d[2] * c * c + 2 * d[3] * c * s + d[4] * s * s, d[5] * c * c + 2 * d[6] * c * s + d[7] * s * s)
 
 
 @njit(cache=True)
@@ -128,7 +168,7 @@ def _follow(
 ) -> Array:
     """One way along a ridge from `start`, (k, 2): a step along it, then Newton steps to the top across it.
 
-    The direction is a running mean of the eigenvector and the way travelled. Where the ridge falls off
+    The direction is a running mean of that of the curvatures and the way travelled. Where the ridge falls off
     steeply, at its ends, a small fault of direction moves the summit of the section far to its side: the
     direction is then held, by a rate 1 / (1 + (L / HOLD_MM)^2), L = |slope along| / |curvature across|.
     """
@@ -138,7 +178,7 @@ def _follow(
     line = np.empty((limit, 2))
     line[0] = start
     u, v = start
-    tu, tv = _along(_derivatives_at(fields, u, v))
+    _, tu, tv = _along(_derivatives_at(fields, u, v))
     tu, tv = sign * tu, sign * tv
     for count in range(1, limit):
         pu, pv = u + step * tu / spacing[0], v + step * tv / spacing[1]
@@ -153,7 +193,7 @@ def _follow(
         if _turns(line, count, back, spacing):
             return line[: count - back].copy()
         d = _derivatives_at(fields, u, v)
-        au, av = _along(d)
+        _, au, av = _along(d)
         flip = 1.0 if au * tu + av * tv >= 0 else -1.0
         rate = RATE_PER_MM * step / (1.0 + ((d[0] * tu + d[1] * tv) / (bend * HOLD_MM)) ** 2)
         tu, tv = tu + rate * (du / size + flip * au), tv + rate * (dv / size + flip * av)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ddf.metrics.base import height_field
-from ddf.metrics.crests import Crest, is_wrinkle, select_crests
+from ddf.metrics.crests import Crest, select_crests
 from ddf.metrics.linking import join_lines
 from ddf.metrics.profiles import AMPLITUDE, ARC, AREA, WIDTH, Sections, cut_sections
 from ddf.metrics.ridges import trace_ridges
@@ -17,7 +17,6 @@ from ddf.metrics.surface import Array, Mask, PlySurface, cell_area
 SMOOTHING_MM = 2.5  # Gaussian of the height in which ridges are looked for
 REACH_MM = 30.0  # half-length of the sections: flanks of wider folds are cut off there
 GAP_MM = 6.0  # longest interruption of a crest
-CONVEXITY = 0.5  # least sagitta of the sheet, as a share of that of a fold on a flat base
 CURVATURE_PER_THRESHOLD = 0.006  # [1/mm2] least curvature of a ridge per mm of threshold
 
 
@@ -87,13 +86,13 @@ def find_wrinkles(
 ) -> WrinkleResult:
     """Find and measure the wrinkles of a ply.
 
-    A wrinkle is a ridge of the height over the tool, along which a section across rises by more than
-    `threshold_mm` over the base between its feet and is itself convex, for at least `min_length_mm`.
+    A wrinkle is a ridge along which, for at least `min_length_mm`, a section across rises by more than
+    `threshold_mm` over the base between its feet, in its height over the tool and in its own shape.
     """
     field = height_field(surface)
     spacing = surface.spacing
     domain = surface.cell_fraction > 0
-    lines = trace_ridges(field.h, domain, spacing, SMOOTHING_MM, CURVATURE_PER_THRESHOLD * threshold_mm)
+    lines = trace_ridges(field, domain, spacing, SMOOTHING_MM, CURVATURE_PER_THRESHOLD * threshold_mm)
     lines = join_lines(lines, spacing, GAP_MM)
     if not lines:
         return WrinkleResult([], np.zeros(domain.shape, bool), np.zeros(surface.shape), 0.0)
@@ -101,7 +100,6 @@ def find_wrinkles(
     crests, height = select_crests(
         lines,
         sections,
-        is_wrinkle(sections, threshold_mm, CONVEXITY),
         field.x,
         step_mm=0.5 * min(spacing),
         gap_mm=GAP_MM,

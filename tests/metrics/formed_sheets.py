@@ -139,7 +139,7 @@ def bend(
 ) -> np.ndarray:
     """A sheet with one cylindrical bend across the first direction, and points at height h over it.
 
-    It runs level to u = flat_to, turns through `slope` (up if positive) on an arc of `radius`, goes on straight.
+    Level to u = flat_to, then an arc of `radius` through `slope` (up if positive), then straight.
     """
     turn = np.sign(slope) * np.clip((u - flat_to) / radius, 0, abs(slope))
     on_arc = radius * np.sin(np.abs(turn))

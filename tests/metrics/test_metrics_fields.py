@@ -106,7 +106,9 @@ def test_outline_askew_to_the_fibres_and_turned_clockwise():
 def test_bridging_over_a_hollow_corner():
     u, v = grid(160, 2)
     slope, radius = np.radians(54.7), 40.0
-    surface = sheet(bend(u, v, 0 * u, slope, radius, -19.0), corner_distance(slope, radius, -19.0))
+    surface = sheet(
+        bend(u, v, 0 * u, slope, radius, -20 * slope), corner_distance(slope, radius, -20 * slope)
+    )
     bridging = find_bridging(surface)
     assert bridging.largest_mm == pytest.approx(radius * (1 - np.cos(0.5 * slope)), rel=0.005)
     # gap over the arc: R (1 - cos t) up to the middle, twice

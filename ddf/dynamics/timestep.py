@@ -1,0 +1,52 @@
+"""Stable steps from bounds on the eigenvalues of each sheet's forces over mass.
+
+All bounds are per area: a sheet of areal mass m with several stiffnesses has omega^2 <= the sum of theirs.
+Explicit steps with damping that lags half a step are stable for  omega dt <= 2 (sqrt(1 + z^2) - z),  z the
+damping ratio at omega. The inner step resolves the fibres; the outer one everything else.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def damped_limit(omega: float, ratio: float) -> float:
+    """Largest stable step [s] at angular frequency omega [1/s] with damping ratio `ratio` there."""
+    return 2.0 / omega * (np.sqrt(1.0 + ratio * ratio) - ratio)
+
+
+def fibre_omega(eh: float, mass: float, spacing: float) -> float:
+    """Highest frequency of a fibre line: omega^2 = 4 E h / (m a^2); E h [N/mm], m [tonne/mm2], a [mm]."""
+    return float(np.sqrt(4.0 * eh / mass) / spacing)
+
+
+def ply_omega2(
+    shear: float, bend: tuple[float, float], mass: float, spacing: tuple[float, float], contact: float
+) -> float:
+    """Bound of omega^2 of a ply's slow forces.
+
+    Shear 4 N_s'(1/a1^2 + 1/a2^2)/m, bending 16 (D1/a1^4 + D2/a2^4)/m, contact 2 K/m with K the sum of the
+    contact stiffnesses [N/mm3] on its two faces.
+    """
+    a1, a2 = spacing
+    stretch = 4.0 * shear * (1 / a1**2 + 1 / a2**2)
+    bending = 16.0 * (bend[0] / a1**4 + bend[1] / a2**4)
+    return (stretch + bending + 2.0 * contact) / mass
+
+
+def diaphragm_omega2(
+    mu: float, thickness: float, rigidity: float, mass: float, element: float, contact: float, tool: float
+) -> float:
+    """Bound of omega^2 of a diaphragm with square elements of the given size.
+
+    Membrane 16 mu t (2/a^2)/m (the largest plane-stress modulus of a rubber is 4 mu at rest), plate
+    16 D (2/a^2)^2/m, contact 2 K/m, tool K/m.
+    """
+    q = 2.0 / element**2
+    return (16.0 * mu * thickness * q + 16.0 * rigidity * q * q + 2.0 * contact + tool) / mass
+
+
+def contact_damping(fraction: float, stiffness: float, mass_a: float, mass_b: float) -> float:
+    """Damping per area 2 z sqrt(K m) [N s/mm3], m the reduced areal mass of the two sheets [tonne/mm2]."""
+    reduced = mass_a * mass_b / (mass_a + mass_b) if np.isfinite(mass_b) else mass_a
+    return float(2.0 * fraction * np.sqrt(stiffness * reduced))

@@ -1,0 +1,90 @@
+"""Trellis shear of a woven ply: the normalised shear force N_s(g), and its table for the kernels.
+
+A law gives N_s(g) [N/mm] over the shear angle g. From a tangent modulus G(g) = sum c_k |g|^k [MPa] and the
+thickness h:  N_s = h sum c_k g^(k+1)/(k+1).
+
+`published` takes the law as entered. Where its slope is negative, homogeneous shear is unstable: it localises
+into bands one element wide. `monotone` is the closest law, in least squares over g, whose slope is nowhere
+below h times a small floor: with M = N_s - floor h g it is the isotonic regression of M.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import isotonic_regression
+
+FloatArray = NDArray[np.float64]
+
+LARGEST_SINE = 0.985  # 80 degrees; the last cubic goes on beyond
+INTERVALS = 1024
+SAMPLES = 4001
+
+
+def polynomial_law(coefficients: Sequence[float], thickness_mm: float, angle: FloatArray) -> FloatArray:
+    """N_s [N/mm] at shear angles [rad] >= 0 from the tangent modulus' ascending coefficients [MPa]."""
+    powers = np.arange(len(coefficients)) + 1
+    terms = np.asarray(coefficients) / powers
+    return thickness_mm * np.polynomial.polynomial.polyval(angle, np.concatenate([[0.0], terms]))
+
+
+def table_law(angle_deg: Sequence[float], force_N_mm: Sequence[float], angle: FloatArray) -> FloatArray:
+    """N_s [N/mm] at angles [rad] from a measured table, monotone cubic between and linear beyond its points."""
+    given = np.deg2rad(np.asarray(angle_deg, dtype=float))
+    curve = PchipInterpolator(given, np.asarray(force_N_mm, dtype=float))
+    end = given[-1]
+    beyond = curve(end) + curve.derivative()(end) * (angle - end)
+    return np.where(angle <= end, curve(np.minimum(angle, end)), beyond)
+
+
+def monotone(angle: FloatArray, force: FloatArray, floor_N_mm: float) -> FloatArray:
+    """Closest curve to `force` over evenly spaced `angle` [rad] whose slope is at least `floor_N_mm` [N/mm]."""
+    tilt = floor_N_mm * angle
+    return isotonic_regression(force - tilt).x + tilt
+
+
+def shear_samples(
+    law: str,
+    thickness_mm: float,
+    floor_MPa: float,
+    coefficients: Sequence[float] | None,
+    table: tuple[Sequence[float], Sequence[float]] | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Angles [rad], 0 .. asin(LARGEST_SINE), and N_s [N/mm] of the law that will run."""
+    angle = np.linspace(0.0, np.arcsin(LARGEST_SINE), SAMPLES)
+    if coefficients is not None:
+        force = polynomial_law(coefficients, thickness_mm, angle)
+    elif table is not None:
+        force = table_law(*table, angle)
+    else:
+        raise ValueError("a shear law needs coefficients or a table")
+    if law == "monotone":
+        force = monotone(angle, force, floor_MPa * thickness_mm)
+    return angle, force - force[0]
+
+
+def shear_table(angle: FloatArray, force: FloatArray) -> FloatArray:
+    """Cubics of dW/ds = N_s / cos g over s = sin g, (INTERVALS + 1, 5), from samples of a law.
+
+    Row k holds c0 .. c3 of c0 + c1 u + c2 u^2 + c3 u^3, u = s/width - k, and W at its start [N/mm]; the last
+    row holds the width of an interval.
+    """
+    s = np.linspace(0.0, LARGEST_SINE, INTERVALS + 1)
+    g = np.arcsin(s)
+    slope = PchipInterpolator(s, PchipInterpolator(angle, force)(g) / np.cos(g))
+    width = s[1]
+    table = np.zeros((INTERVALS + 1, 5))
+    for k in range(4):
+        table[:-1, k] = slope.c[3 - k] * width**k
+    table[:-1, 4] = slope.antiderivative()(s[:-1])
+    table[-1, 0] = width
+    return table
+
+
+def largest_tangent(angle: FloatArray, force: FloatArray, up_to_deg: float = 60.0) -> float:
+    """Largest slope |dN_s/dg| [N/mm] up to an angle: what the step must resolve."""
+    inside = angle <= np.deg2rad(up_to_deg)
+    return float(np.max(np.abs(np.gradient(force[inside], angle[inside]))))
