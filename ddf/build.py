@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 
 from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
+from ddf.contact.patch import patch_centres
 from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
 from ddf.loads.path import LoadPath
@@ -264,7 +265,7 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
     """Node pools of the model: masses, areas, bars, cells, triples, spans."""
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
-    spans, firsts, first = [], [], 0
+    spans, firsts, centres, first = [], [], [], 0
     for k, s in enumerate(sheets):
         n, m = int(s["rows"]), int(s["cols"])
         zero = np.zeros((n, m))
@@ -273,13 +274,13 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
             span = np.asarray(ply.row_span)
-            held = np.zeros((n, m), bool)
+            held, exists = np.zeros((n, m), bool), ply.active
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
             values["area"], values["cell"] = _corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
             span = np.tile([0, m], (n, 1))
-            held = np.ones((n, m), bool)
+            held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
         mass = masses[k] * values["area"]
         values["mass"] = np.where(held, 0.0, mass)
@@ -287,10 +288,12 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
         for name in names:
             parts[name].append(values[name].ravel())
         spans.append(span)
+        centres.append(patch_centres(exists).ravel())
         firsts.append(first)
         first += n
     pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
     pools["row_span"] = np.ascontiguousarray(np.concatenate(spans).astype(np.int64))
+    pools["centre"] = np.concatenate(centres)
     pools["row_first"] = np.array(firsts, dtype=np.int64)
     return pools
 

@@ -9,10 +9,10 @@ from ddf.dynamics.step import SCRATCH_ROWS, Work, advance
 from ddf.dynamics.team import Team
 from ddf.elements.rubber import cone_volume
 from ddf.elements.tension import FAST
-from ddf.model import DIAPHRAGM, PLY, PRESSURE_WORK, Model, sheet_vectors
+from ddf.model import DIAPHRAGM, PLY, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
 from ddf.scene import Scene
 
-REACH_SPEED = 500.0  # mm/s: least speed that the tool's sleeping cells allow for
+REACH_SPEED = 500.0  # mm/s: least relative speed that sleeping cells and resting nodes allow for
 
 
 @njit(**FAST)
@@ -54,7 +54,7 @@ def make_work(model: Model, members: int) -> Work:
     return Work(
         scratch=np.zeros((members, SCRATCH_ROWS * widest)), buffers=np.zeros(buffers),
         spans=np.zeros((spans, 2), np.int64), carry=np.zeros((model.blocks.size, 3, widest)),
-        sleep=np.zeros(cells, np.int16), tiles=table, tile_x=np.zeros(3 * first[-1]), tile_v=np.zeros(3 * first[-1]),
+        sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8), tiles=table, tile_x=np.zeros(3 * first[-1]), tile_v=np.zeros(3 * first[-1]),
         tile_green1=np.zeros(first[-1]), tile_green2=np.zeros(first[-1]), tile_first=first[:-1].copy(),
         wave=np.zeros((len(table), (2 * model.inner + 2) * 3 * widest)), lost=np.zeros(len(table)),
     )  # fmt: skip
@@ -96,8 +96,10 @@ class Simulation:
         model, state = self.model, self.state
         times = (self.step + np.arange(steps)) * model.dt
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
-        speed = max(REACH_SPEED, 2.0 * (self.fastest(0) + float(np.abs(schedule[:, 4]).max())))
+        fastest = max(self.fastest(k) for k in range(model.sheets.size))
+        speed = max(REACH_SPEED, 4.0 * fastest + float(np.abs(schedule[:, TOOL_SPEED]).max()))
         self.work.sleep[:] = 0
+        self.work.rest[:] = np.where(model.exposed, 0, -1)
         self.work.lost[:] = 0.0
         self.team.run(advance, model, state, self.work, schedule, speed * model.dt)
         np.add.at(state.fibre_damping, self.work.tiles[:, 0], self.work.lost)

@@ -1,7 +1,8 @@
-"""Contact of neighbouring sheets: slave nodes against the bilinear patches of a master sheet.
+"""Contact of neighbouring sheets: slave nodes against the smooth surface of a master sheet.
 
 A slave node keeps its place (u, v) on the master's grid; one Newton step of the closest-point projection a
-step tracks it. With N_k the patch's shape functions there, tangents S_1, S_2, normal n, r = x_s - N_k x_k:
+step tracks it. With N_k the weights of the surface's nodes there (`patch.py`), tangents S_1, S_2, normal n,
+r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     place  r^a = contravariant components of r (metric of S_1, S_2): the Newton step
@@ -16,7 +17,8 @@ Sum f_k = -f since sum N_k,a = 0; and because sum N_k,a x_k = S_a the moments ca
 r x f = r^a S_a x f + d n x f, whether or not the projection has converged. Without the second term the two
 forces lie a gap apart and every contact would be a couple.
 
-A node whose place lies outside the master's grid, or on a cell that does not exist, is not in contact.
+A node whose place lies outside the master's fabric is not in contact. One that is far away rests for as many
+steps as it needs at the given reach to come near.
 Forces on the master go to one buffer a block of slave rows; the buffers are summed in a fixed order, so the
 result does not depend on the number of threads.
 """
@@ -27,7 +29,11 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.friction import coulomb, length
+from ddf.contact.patch import interpolate, spread, weights
 from ddf.elements.tension import FAST
+
+LONGEST_REST = 8
+DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost, not pressed
 
 
 @njit(**FAST)
@@ -45,119 +51,106 @@ def clear_buffer(buffer, span):
 
 @njit(inline="always")
 def _touch(span, i, j):
-    """Note that columns j, j+1 of row i of a buffer are written."""
+    """Note that columns j-1 .. j+1 of row i of a buffer are written."""
     if span[i, 1] == 0:
-        span[i, 0] = j
+        span[i, 0] = j - 1
         span[i, 1] = j + 2
     else:
-        if j < span[i, 0]:
-            span[i, 0] = j
+        if j - 1 < span[i, 0]:
+            span[i, 0] = j - 1
         if j + 2 > span[i, 1]:
             span[i, 1] = j + 2
 
 
 @njit(**FAST)
-def layer_forces(xs, vs, fs, area, xm, vm, cell, place, anchor, exposed, buffer, span, pair, dt, low, high, out):
+def layer_forces(
+    xs, vs, fs, area, xm, vm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, out
+):
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
     xs, vs, fs (3, n, m) slave; xm, vm (3, N, M) master; area (n, m) [mm2]; cell (N, M) area of the master's
-    cells; place, anchor (2, n, m) updated; exposed (n, m) bool; buffer (3, N, M), span (N, 2). out (4,):
-    normal and tangential spring energy now, friction and damping loss of this step [N mm].
+    cells; centre (N, M, 2) from `patch_centres`; place, anchor (2, n, m) updated; rest (n, m) int8: steps to
+    rest, negative for nodes that are not followed; buffer (3, N, M), span (N, 2); reach: way that a node can
+    go in a step [mm]. out (4,): normal and tangential spring energy now, friction and damping loss of this
+    step [N mm].
     """
     n_rows, n_cols = xm.shape[1], xm.shape[2]
     sign, offset, mu = pair.sign, pair.offset, pair.friction
+    x0, x1, x2, v0, v1, v2 = xm[0], xm[1], xm[2], vm[0], vm[1], vm[2]
+    b0, b1, b2 = buffer[0], buffer[1], buffer[2]
     for i in range(low, high):
         for j in range(xs.shape[2]):
-            if not exposed[i, j]:
+            if rest[i, j] != 0:
+                if rest[i, j] > 0:
+                    rest[i, j] -= 1
                 continue
-            u, v = place[0, i, j], place[1, i, j]
-            p = min(max(int(u), 0), n_rows - 2)
-            q = min(max(int(v), 0), n_cols - 2)
-            a, b = u - p, v - q
-            x00, x10, x01, x11 = xm[0, p, q], xm[0, p + 1, q], xm[0, p, q + 1], xm[0, p + 1, q + 1]
-            y00, y10, y01, y11 = xm[1, p, q], xm[1, p + 1, q], xm[1, p, q + 1], xm[1, p + 1, q + 1]
-            z00, z10, z01, z11 = xm[2, p, q], xm[2, p + 1, q], xm[2, p, q + 1], xm[2, p + 1, q + 1]
-            ux = (1 - b) * (x10 - x00) + b * (x11 - x01)
-            uy = (1 - b) * (y10 - y00) + b * (y11 - y01)
-            uz = (1 - b) * (z10 - z00) + b * (z11 - z01)
-            vx = (1 - a) * (x01 - x00) + a * (x11 - x10)
-            vy = (1 - a) * (y01 - y00) + a * (y11 - y10)
-            vz = (1 - a) * (z01 - z00) + a * (z11 - z10)
-            rx = xs[0, i, j] - (x00 + a * (x10 - x00) + b * vx)
-            ry = xs[1, i, j] - (y00 + a * (y10 - y00) + b * vy)
-            rz = xs[2, i, j] - (z00 + a * (z10 - z00) + b * vz)
+            u0, w0 = place[0, i, j], place[1, i, j]
+            near_i, near_j = min(max(int(u0 + 0.5), 0), n_rows - 1), min(max(int(w0 + 0.5), 0), n_cols - 1)
+            p, q = np.int64(centre[near_i, near_j, 0]), np.int64(centre[near_i, near_j, 1])
+            if p < 0:
+                rest[i, j] = LONGEST_REST
+                continue
+            a, b = weights(u0 - p), weights(w0 - q)
+            sx, ux, vx = interpolate(x0, p, q, a, b)
+            sy, uy, vy = interpolate(x1, p, q, a, b)
+            sz, uz, vz = interpolate(x2, p, q, a, b)
+            rx, ry, rz = xs[0, i, j] - sx, xs[1, i, j] - sy, xs[2, i, j] - sz
             guu = ux * ux + uy * uy + uz * uz
             gvv = vx * vx + vy * vy + vz * vz
             guv = ux * vx + uy * vy + uz * vz
-            det = guu * gvv - guv * guv
-            inv = 1.0 / max(det, 1e-30)
+            inv = 1.0 / max(guu * gvv - guv * guv, 1e-30)
             ru = rx * ux + ry * uy + rz * uz
             rv = rx * vx + ry * vy + rz * vz
-            du = (gvv * ru - guv * rv) * inv
-            dv = (guu * rv - guv * ru) * inv
-            du = min(max(du, -0.5), 0.5)
-            dv = min(max(dv, -0.5), 0.5)
-            u = min(max(u + du, -1.0), n_rows + 0.0)
-            v = min(max(v + dv, -1.0), n_cols + 0.0)
+            du = min(max((gvv * ru - guv * rv) * inv, -0.5), 0.5)
+            dv = min(max((guu * rv - guv * ru) * inv, -0.5), 0.5)
+            u, v = min(max(u0 + du, -1.0), n_rows + 0.0), min(max(w0 + dv, -1.0), n_cols + 0.0)
             place[0, i, j] = u
             place[1, i, j] = v
             il = np.sqrt(inv)
-            nx = (uy * vz - uz * vy) * il
-            ny = (uz * vx - ux * vz) * il
-            nz = (ux * vy - uy * vx) * il
+            nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
             d = rx * nx + ry * ny + rz * nz
             gap = sign * d - offset
-            inside = u >= 0.0 and v >= 0.0 and u <= n_rows - 1.0 and v <= n_cols - 1.0
-            if gap >= 0.0 or gap < -4.0 * offset or not inside or cell[p, q] <= 0.0:
+            if gap >= 0.0:
+                anchor[0, i, j] = u
+                anchor[1, i, j] = v
+                rest[i, j] = min(LONGEST_REST, int(gap / reach))
+                continue
+            inside = u >= 0.0 and v >= 0.0 and u < n_rows - 1.0 and v < n_cols - 1.0
+            if not inside or gap < -DEEPEST * offset or cell[int(max(u, 0.0)), int(max(v, 0.0))] <= 0.0:
                 anchor[0, i, j] = u
                 anchor[1, i, j] = v
                 continue
-            w = area[i, j]
-            a += du
-            b += dv
-            w00, w10, w01, w11 = (1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b
-            k = pair.stiffness * w
-            c = pair.damping * w
-            sx, sy, sz, nu, nv = 0.0, 0.0, 0.0, 0.0, 0.0
-            for e in range(3):
-                v00, v10, v01, v11 = vm[e, p, q], vm[e, p + 1, q], vm[e, p, q + 1], vm[e, p + 1, q + 1]
-                slip = vs[e, i, j] - (w00 * v00 + w10 * v10 + w01 * v01 + w11 * v11)
-                ne = nx if e == 0 else (ny if e == 1 else nz)
-                nu += ne * ((1 - b) * (v10 - v00) + b * (v11 - v01))
-                nv += ne * ((1 - a) * (v01 - v00) + a * (v11 - v10))
-                if e == 0:
-                    sx = slip
-                elif e == 1:
-                    sy = slip
-                else:
-                    sz = slip
+            mx, mux, mvx = interpolate(v0, p, q, a, b)
+            my, muy, mvy = interpolate(v1, p, q, a, b)
+            mz, muz, mvz = interpolate(v2, p, q, a, b)
+            sx = vs[0, i, j] - mx - du * mux - dv * mvx
+            sy = vs[1, i, j] - my - du * muy - dv * mvy
+            sz = vs[2, i, j] - mz - du * muz - dv * mvz
             rate = sx * nx + sy * ny + sz * nz
+            nu, nv = nx * mux + ny * muy + nz * muz, nx * mvx + ny * mvy + nz * mvz
             ou, ov = d * (gvv * nu - guv * nv) * inv, d * (guu * nv - guv * nu) * inv
             sx += ou * ux + ov * vx - rate * nx
             sy += ou * uy + ov * vy - rate * ny
             sz += ou * uz + ov * vz - rate * nz
+            k, c = pair.stiffness * area[i, j], pair.damping * area[i, j]
             fn = max(0.0, -k * gap - c * sign * rate)
             tu, tv = u - anchor[0, i, j], v - anchor[1, i, j]
-            tx = -k * (tu * ux + tv * vx) - c * sx
-            ty = -k * (tu * uy + tv * vy) - c * sy
-            tz = -k * (tu * uz + tv * vz) - c * sz
-            trial = length(tx, ty, tz)
-            share = coulomb(trial, mu * fn)
-            tx *= share
-            ty *= share
-            tz *= share
-            keep = 1.0
             px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
+            tx, ty, tz = -k * px - c * sx, -k * py - c * sy, -k * pz - c * sz
+            share = coulomb(length(tx, ty, tz), mu * fn)
+            tx, ty, tz = tx * share, ty * share, tz * share
+            au, av = u0 - anchor[0, i, j], w0 - anchor[1, i, j]
+            before = 0.5 * k * (au * au * guu + 2.0 * au * av * guv + av * av * gvv)
             stretch = length(px, py, pz)
+            keep = 1.0
             if share < 1.0:  # the anchor follows until the spring alone would carry the friction force
                 keep = min(1.0, mu * fn / max(k * stretch, 1e-30))
                 anchor[0, i, j] = u - keep * tu
                 anchor[1, i, j] = v - keep * tv
-            before = length(px - dt * sx, py - dt * sy, pz - dt * sz)
             stored = 0.5 * k * keep * keep * stretch * stretch
             out[0] += 0.5 * k * gap * gap
             out[1] += stored
-            out[2] += 0.5 * k * before * before - stored - dt * (tx * sx + ty * sy + tz * sz)
+            out[2] += before - stored - dt * (tx * sx + ty * sy + tz * sz)
             out[3] -= dt * (fn + k * gap) * sign * rate
             fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
             fs[0, i, j] += fx
@@ -165,27 +158,13 @@ def layer_forces(xs, vs, fs, area, xm, vm, cell, place, anchor, exposed, buffer,
             fs[2, i, j] += fz
             cu = d * (tx * ux + ty * uy + tz * uz)
             cv = d * (tx * vx + ty * vy + tz * vz)
-            eu = (gvv * cu - guv * cv) * inv
-            ev = (guu * cv - guv * cu) * inv
-            w00, w11 = w00 - du * dv, w11 - du * dv  # first order in (du, dv), as the moments want it
-            w10, w01 = w10 + du * dv, w01 + du * dv
-            a -= du
-            b -= dv
-            q00 = -(1 - b) * eu - (1 - a) * ev
-            q10 = (1 - b) * eu - a * ev
-            q01 = -b * eu + (1 - a) * ev
-            q11 = b * eu + a * ev
+            eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
+            _touch(span, p - 1, q)
             _touch(span, p, q)
             _touch(span, p + 1, q)
-            buffer[0, p, q] += q00 * nx - w00 * fx
-            buffer[1, p, q] += q00 * ny - w00 * fy
-            buffer[2, p, q] += q00 * nz - w00 * fz
-            buffer[0, p + 1, q] += q10 * nx - w10 * fx
-            buffer[1, p + 1, q] += q10 * ny - w10 * fy
-            buffer[2, p + 1, q] += q10 * nz - w10 * fz
-            buffer[0, p, q + 1] += q01 * nx - w01 * fx
-            buffer[1, p, q + 1] += q01 * ny - w01 * fy
-            buffer[2, p, q + 1] += q01 * nz - w01 * fz
-            buffer[0, p + 1, q + 1] += q11 * nx - w11 * fx
-            buffer[1, p + 1, q + 1] += q11 * ny - w11 * fy
-            buffer[2, p + 1, q + 1] += q11 * nz - w11 * fz
+            k0 = (a[0] + du * a[3], dv * a[0], eu * a[3], ev * a[0])
+            k1 = (a[1] + du * a[4], dv * a[1], eu * a[4], ev * a[1])
+            k2 = (a[2] + du * a[5], dv * a[2], eu * a[5], ev * a[2])
+            spread(b0, p, q, b, fx, nx, k0, k1, k2)
+            spread(b1, p, q, b, fy, ny, k0, k1, k2)
+            spread(b2, p, q, b, fz, nz, k0, k1, k2)

@@ -50,13 +50,14 @@ SCRATCH_ROWS = 72
 
 
 class Work(NamedTuple):
-    """Scratch memory: nothing in it outlives a step, but for `sleep`, which every call of `advance` clears."""
+    """Scratch memory: nothing in it outlives a step, but for `sleep` and `rest`, which are set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
     buffers: np.ndarray  # forces on masters, one (3, N, M) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written in each row of each buffer
     carry: np.ndarray  # (blocks, 3, widest + 2) row of the next block
-    sleep: np.ndarray  # (n-1, m-1) int16
+    sleep: np.ndarray  # (n-1, m-1) int16: steps that a cell of the tool's sheet sleeps
+    rest: np.ndarray  # (P,) int8: steps that a slave node rests
     tiles: np.ndarray  # (tiles, 5): sheet, low, high, first row with halo, end
     tile_x: np.ndarray  # pools of the tiles, halo included
     tile_v: np.ndarray
@@ -110,7 +111,7 @@ def _buffer(work, model, pair, index):
 
 
 @njit(**FAST)
-def _layers(model, state, work, b, dt):
+def _layers(model, state, work, b, dt, reach):
     """Forces of all pairs in which the block's sheet is the slave."""
     block = model.blocks[b]
     index = b - _first_block(model, block.sheet)
@@ -128,10 +129,13 @@ def _layers(model, state, work, b, dt):
         layer_forces(
             vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), scalars(model.area, slave),
             vectors(state.x, master), vectors(state.v, master), scalars(model.cell, master),
+            model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
+                (master.rows, master.cols, 2)
+            ),
             state.place[2 * first : 2 * (first + n)].reshape(shape),
             state.anchor[2 * first : 2 * (first + n)].reshape(shape),
-            model.exposed[first : first + n].reshape((slave.rows, slave.cols)),
-            buffer, span, pair, dt, block.low, block.high, out,
+            work.rest[first : first + n].reshape((slave.rows, slave.cols)),
+            buffer, span, pair, reach, dt, block.low, block.high, out,
         )  # fmt: skip
     state.springs[b, NORMAL_SPRING] = out[0]
     state.springs[b, TANGENTIAL_SPRING] = out[1]
@@ -268,7 +272,7 @@ def _advance_tile(model, state, work, t, dt):
 def advance(member, members, sync, model, state, work, schedule, reach):
     """Run one outer step a row of `schedule` (steps, SCHEDULE); every member of the team calls it.
 
-    reach: way that a sheet can go in a step, for the tool's sleeping cells [mm].
+    reach: way that a sheet can go in a step, for what sleeps and rests [mm].
     """
     blocks, tiles = model.blocks.shape[0], work.tiles.shape[0]
     dt = model.dt
@@ -278,7 +282,7 @@ def advance(member, members, sync, model, state, work, schedule, reach):
         b = draw(sync, base)
         while b < blocks:
             _internal(model, state, row, b, work.scratch[member])
-            _layers(model, state, work, b, dt)
+            _layers(model, state, work, b, dt, reach)
             if model.blocks[b].sheet == model.tool_sheet:
                 _tool(model, state, work, row, b, dt, reach)
             b = draw(sync, base)
