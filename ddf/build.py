@@ -47,10 +47,10 @@ def build_scene(case: Case) -> Scene:
     tool_mesh, tool_field = (None, None) if case.tool is None else _tool(case.tool)
     rubber = hyperelastic_material(case, case.diaphragms.material)
     terms = rubber.abaqus_terms
-    scale, fibre_step, masses = _masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3)
-    sheets, laws, tangents = _sheets(case, stack, terms, fibre_step, masses)
-    limit = _outer_limit(case, stack, terms, masses, tangents, tool_field is not None)
-    dt, inner, notes = _choose_steps(case, fibre_step, limit)
+    sheets, laws, tangents = _sheets(case, stack, terms)
+    scale, masses = _masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3, tangents)
+    limit = _step_limit(case, stack, terms, masses, tangents, tool_field is not None)
+    dt = limit if case.solver.step_s is None else case.solver.step_s
     pools = _pools(case, stack, sheets, masses)
     pairs, exposed, places = _pairs(case, stack, masses, sheets)
     blocks = _blocks(sheets)
@@ -68,15 +68,15 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_friction=friction.diaphragm_tool, dt=dt, inner=inner,
+        tool_friction=friction.diaphragm_tool, fibre_damping=solver.fibre_damping, dt=dt,
     )  # fmt: skip
     state = _initial_state(stack, model, places)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)
     face = stack.z[0] - 0.5 * stack.thickness[0]
     return Scene(
         case=case, model=model, state=state, sheets=_infos(case, stack, model, scale), path=load_path(case),
-        base_z=face - height, tool_mesh=tool_mesh, tool_field=tool_field, fibre_step=fibre_step,
-        outer_limit=limit, notes=tuple(notes),
+        base_z=face - height, tool_mesh=tool_mesh, tool_field=tool_field,
+        step_limit=limit,
     )  # fmt: skip
 
 
@@ -157,29 +157,31 @@ def _nominal_height(tool: Tool, mesh: TriangleMesh) -> float:
     return float(mesh.top_mm) if tool.height_mm is None else tool.height_mm
 
 
-def _masses(case: Case, stack: _Stack, density: float) -> tuple[list[float], float, list[float]]:
-    """Mass scaling of each ply, stable inner step [s], areal mass of each sheet as clamped [tonne/mm2]."""
+def _masses(
+    case: Case, stack: _Stack, density: float, tangents: list[float]
+) -> tuple[list[float], list[float]]:
+    """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2]."""
     solver = case.solver
-    scales, steps = [], []
-    for ply, material in zip(stack.plies, stack.materials, strict=True):
+    scales = []
+    for ply, material, shear in zip(stack.plies, stack.materials, tangents, strict=True):
         areal = material.areal_density_gsm * TONNE_PER_GSM_MM2
-        omega = max(
-            timestep.fibre_omega(eh, areal, a)
-            for eh, a in zip(material.membrane_modulus_N_mm, ply.spacing, strict=True)
-        )
-        step = solver.step_safety * timestep.damped_limit(omega, solver.fibre_damping)
         if solver.target_step_s is not None:
-            scale = max(1.0, (solver.target_step_s / step) ** 2)
+            omega2 = _ply_omega2(case, ply, material, shear, areal)
+            step = solver.step_safety * timestep.damped_limit(math.sqrt(omega2), solver.contact_damping)
+            scales.append(max(1.0, (solver.target_step_s / step) ** 2))
         else:
-            scale = 10.0 if solver.mass_scaling is None else solver.mass_scaling
-        scales.append(scale)
-        steps.append(step * math.sqrt(scale))
+            scales.append(solver.mass_scaling if solver.mass_scaling is not None else 1.0)
     skin = density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
     plies = [m.areal_density_gsm * TONNE_PER_GSM_MM2 * s for m, s in zip(stack.materials, scales, strict=True)]
-    return scales, min(steps), [skin, *plies, skin]
+    return scales, [skin, *plies, skin]
 
 
-def _sheets(case: Case, stack: _Stack, terms, fibre_step: float, masses: list[float]):
+def _ply_omega2(case: Case, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
+    stiff, tension = case.solver.contact_stiffness_N_mm3, case.solver.fibre_tension_allowed_N_mm
+    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, tension, ply.spacing, 2.0 * stiff, mass)
+
+
+def _sheets(case: Case, stack: _Stack, terms):
     """SHEET records, the stacked shear tables and the largest shear tangent of each ply [N/mm]."""
     count = len(stack.plies) + 2
     sheets = np.zeros(count, SHEET)
@@ -197,8 +199,6 @@ def _sheets(case: Case, stack: _Stack, terms, fibre_step: float, masses: list[fl
             s["eh1"], s["eh2"] = material.membrane_modulus_N_mm
             s["bend1"], s["bend2"] = material.bending_rigidity_Nmm
             s["bend_in_plane"] = material.in_plane_bending_Nmm
-            for a, eh, name in ((ply.spacing[0], s["eh1"], "viscosity1"), (ply.spacing[1], s["eh2"], "viscosity2")):
-                s[name] = 2.0 * case.solver.fibre_damping * eh / timestep.fibre_omega(eh, masses[k], a)
             table = material.shear_table
             angle, force = shear_law.shear_samples(
                 material.shear_law, material.thickness_mm, material.shear_modulus_floor_MPa,
@@ -217,14 +217,13 @@ def _sheets(case: Case, stack: _Stack, terms, fibre_step: float, masses: list[fl
     return sheets, np.array(tables), tangents
 
 
-def _outer_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents: list[float], tool: bool) -> float:
-    """Stable outer step [s], the least of all sheets, safety included."""
+def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents: list[float], tool: bool) -> float:
+    """Stable step [s], the least of all sheets, safety included."""
     solver, d = case.solver, case.diaphragms
     stiff = solver.contact_stiffness_N_mm3
     limits = []
     for k, (ply, material) in enumerate(zip(stack.plies, stack.materials, strict=True)):
-        bend = material.bending_rigidity_Nmm
-        omega2 = timestep.ply_omega2(tangents[k], bend, masses[k + 1], ply.spacing, 2.0 * stiff)
+        omega2 = _ply_omega2(case, ply, material, tangents[k], masses[k + 1])
         damping = 2.0 * sum(_pair_damping(case, masses, k + 1, other) for other in (k, k + 2))
         limits.append((math.sqrt(omega2), damping / masses[k + 1]))
     mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, d.thickness_mm)
@@ -242,17 +241,6 @@ def _outer_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents
 def _pair_damping(case: Case, masses: list[float], a: int, b: int) -> float:
     s = case.solver
     return timestep.contact_damping(s.contact_damping, s.contact_stiffness_N_mm3, masses[a], masses[b])
-
-
-def _choose_steps(case: Case, fibre_step: float, limit: float) -> tuple[float, int, list[str]]:
-    """Outer step [s] and inner steps by rule, or as the case says, with the reason."""
-    solver = case.solver
-    dt = limit if solver.outer_step_s is None else solver.outer_step_s
-    inner = max(1, math.ceil(dt / fibre_step - 1e-9)) if solver.inner_steps is None else solver.inner_steps
-    if solver.outer_step_s is None and solver.inner_steps is not None:
-        dt = min(dt, inner * fibre_step)
-    notes = [f"outer step {dt:.3g} s (limit {limit:.3g} s), {inner} inner steps (fibre limit {fibre_step:.3g} s)"]
-    return dt, inner, notes
 
 
 def _corner_sum(cells: FloatArray) -> FloatArray:
@@ -349,7 +337,9 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
     for k in range(1, top):
         wanted += [(k, 0, 1.0, friction.ply_diaphragm), (k, top, -1.0, friction.ply_diaphragm)]
         wanted += [(k, j, 1.0, friction.ply_ply) for j in range(1, k)]
-    wanted.append((top, 0, 1.0, friction.diaphragm_diaphragm))
+    # each diaphragm against the other at half stiffness: one way only, small errors in how a graded grid
+    # passes on a pressure push the whole stack to one side
+    wanted += [(top, 0, 1.0, friction.diaphragm_diaphragm), (0, top, -1.0, friction.diaphragm_diaphragm)]
     records, exposed, places = [], [], []
     first = buffer = span = 0
     for slave, master, sign, mu in wanted:
@@ -359,6 +349,8 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         offset = 0.5 * (stack.thickness[slave] + stack.thickness[master])
         damping = _pair_damping(case, masses, slave, master)
         stiffness = case.solver.contact_stiffness_N_mm3
+        if {slave, master} == {0, top}:
+            stiffness, damping = 0.5 * stiffness, 0.5 * damping
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping))
         exposed.append(follow.ravel())
         places.append(place.ravel())
@@ -395,16 +387,15 @@ def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
         x[2] = z
         parts.append(x.ravel())
     x = np.concatenate(parts)
-    nodes = x.size // 3
     bottom = model.sheets[0]
     cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1) if model.tool_sheet >= 0 else (1, 1)
     anchors = np.zeros((*cells, 4, 3))
     anchors[..., 0] = FREE
     return State(
-        x=x, v=np.zeros_like(x), f=np.zeros_like(x), green1=np.zeros(nodes), green2=np.zeros(nodes),
+        x=x, v=np.zeros_like(x), f=np.zeros_like(x),
         place=places.copy(), anchor=places.copy(), tool_anchor=anchors,
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
-        fibre_damping=np.zeros(model.sheets.size), clock=np.zeros(2),
+        clock=np.zeros(2),
     )  # fmt: skip
 
 

@@ -8,9 +8,8 @@ the other in flat pools; `nodes[k]` is the first node of sheet k.
 ============== ===================== =========================================================================
 name           shape                 meaning [unit]
 ============== ===================== =========================================================================
-x, v, f        pool (3 N,)           position [mm], velocity [mm/s], slow force [N]; sheet k is the slice
+x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N]; between steps m dv/dt of the last step; sheet k is the slice
                                      3*node : 3*(node + rows*cols) seen as (3, rows, cols)
-green1, green2 pool (N,)             last lambda^2 - 1 of the bar from a node to its next one along family 1, 2
 place          (2, P)                where a contact slave stands on its master: grid coordinates (u, v)
 anchor         (2, P)                where its friction spring is anchored, same coordinates
 tool_anchor    (3, Q)                anchors of the tool's contact points, tool frame [mm]
@@ -19,8 +18,7 @@ row            grid index i          runs along fibre family 1 (ply) or x (diaph
 col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
 cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
 bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
-outer step     dt                    one evaluation of all slow forces [s]
-inner step     dt / inner            one step of fibre tension and drift [s]
+step           dt                    one evaluation of all forces [s]
 ============== ===================== =========================================================================
 """
 
@@ -34,12 +32,12 @@ from numba import njit
 PLY, DIAPHRAGM = 0, 1
 
 #: columns of the ledger: work done on a sheet and energy that left the sheets, per block of rows
-(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING) = range(7)
-LEDGER = 7
+(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING, FIBRE_DAMPING) = range(8)
+LEDGER = 8
 #: columns of the springs: energy stored now in the contacts of a block (normal, tangential; tool likewise)
 (NORMAL_SPRING, TANGENTIAL_SPRING, TOOL_NORMAL_SPRING, TOOL_TANGENTIAL_SPRING) = range(4)
 SPRINGS = 4
-#: columns of the schedule, one row an outer step
+#: columns of the schedule, one row a step
 (TIME, PRESSURE_TOP, PRESSURE_BOTTOM, TOOL_Z, TOOL_SPEED, DAMPING) = range(6)
 SCHEDULE = 6
 
@@ -56,8 +54,6 @@ SHEET = np.dtype(
         ("a2", np.float64),
         ("eh1", np.float64),  # membrane modulus of family 1 [N/mm]
         ("eh2", np.float64),
-        ("viscosity1", np.float64),  # axial viscosity of family 1 [N s/mm]
-        ("viscosity2", np.float64),
         ("bend1", np.float64),  # bending rigidity along family 1 [N mm]
         ("bend2", np.float64),
         ("bend_in_plane", np.float64),
@@ -123,8 +119,8 @@ class Model(NamedTuple):
     tool_stiffness: float
     tool_damping: float
     tool_friction: float
+    fibre_damping: float  # z of `elements.tension`
     dt: float
-    inner: int
 
 
 class State(NamedTuple):
@@ -133,14 +129,11 @@ class State(NamedTuple):
     x: np.ndarray
     v: np.ndarray
     f: np.ndarray
-    green1: np.ndarray
-    green2: np.ndarray
     place: np.ndarray
     anchor: np.ndarray
     tool_anchor: np.ndarray
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
-    fibre_damping: np.ndarray  # (sheets,) dissipated by axial viscosity [N mm]
     clock: np.ndarray  # (2,): step number, time [s]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,13 +43,11 @@ class Scene:
     base_z: float  # tool's base at zero lift [mm]
     tool_mesh: TriangleMesh | None
     tool_field: DistanceField | None
-    fibre_step: float  # stable inner step [s]
-    outer_limit: float  # stable outer step [s]
-    notes: tuple[str, ...] = field(default=())  # what was chosen and why
+    step_limit: float  # stable step [s], safety included
 
     @property
     def steps(self) -> int:
-        """Outer steps of the whole process."""
+        """Steps of the whole process."""
         return int(np.ceil(self.path.duration / self.model.dt - 1e-9))
 
     @property

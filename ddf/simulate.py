@@ -8,7 +8,7 @@ from numba import njit
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance
 from ddf.dynamics.team import Team
 from ddf.elements.rubber import cone_volume
-from ddf.elements.tension import FAST
+from ddf.elements.tension import FAST, LINES
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
 from ddf.scene import Scene
 
@@ -36,32 +36,25 @@ def make_work(model: Model, members: int) -> Work:
         blocks = int(np.sum(model.blocks["sheet"] == pair["slave"]))
         buffers = max(buffers, int(pair["buffer"]) + 3 * n * m * blocks)
         spans = max(spans, int(pair["span"]) + n * blocks)
-    plies = np.flatnonzero(model.sheets["kind"] == PLY)
-    tiles = []
-    for k in plies:
-        rows = int(model.sheets[k]["rows"])
-        parts = min(max(1, -(-members // len(plies))), rows)
-        cuts = np.linspace(0, rows, parts + 1).astype(int)
-        tiles += [
-            (k, a, b, max(0, a - model.inner), min(rows, b + model.inner))
-            for a, b in zip(cuts[:-1], cuts[1:], strict=True)
-        ]
-    table = np.array(tiles, dtype=np.int64).reshape(-1, 5)
-    sizes = (table[:, 4] - table[:, 3]) * model.sheets["cols"][table[:, 0]]
-    first = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+    bundles: tuple[list[tuple[int, int, int]], ...] = ([], [])
+    for k in np.flatnonzero(model.sheets["kind"] == PLY):
+        for family, key in enumerate(("cols", "rows")):
+            count = int(model.sheets[k][key])
+            bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
+    longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom = model.sheets[0]
     cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1)
     return Work(
         scratch=np.zeros((members, SCRATCH_ROWS * widest)), buffers=np.zeros(buffers),
         spans=np.zeros((spans, 2), np.int64), carry=np.zeros((model.blocks.size, 3, widest)),
-        sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8), tiles=table, tile_x=np.zeros(3 * first[-1]), tile_v=np.zeros(3 * first[-1]),
-        tile_green1=np.zeros(first[-1]), tile_green2=np.zeros(first[-1]), tile_first=first[:-1].copy(),
-        wave=np.zeros((len(table), (2 * model.inner + 2) * 3 * widest)), lost=np.zeros(len(table)),
+        sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8),
+        bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
+        lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 8 * longest * LINES)),
     )  # fmt: skip
 
 
 class Simulation:
-    """A scene in motion. `advance(n)` runs n outer steps; all results are in `scene.state`."""
+    """A scene in motion. `advance(n)` runs n steps; all results are in `scene.state`."""
 
     def __init__(self, scene: Scene, threads: int = 1) -> None:
         self.scene = scene
@@ -72,7 +65,7 @@ class Simulation:
 
     @property
     def step(self) -> int:
-        """Outer steps done."""
+        """Steps done."""
         return int(self.state.clock[0])
 
     @property
@@ -92,7 +85,7 @@ class Simulation:
         return float(np.sqrt(_largest_square(sheet_vectors(self.model, self.state.v, k))))
 
     def advance(self, steps: int) -> None:
-        """Run `steps` outer steps, as one batch: batches must be the same in a run that is resumed."""
+        """Run `steps` steps, as one batch: batches must be the same in a run that is resumed."""
         model, state = self.model, self.state
         times = (self.step + np.arange(steps)) * model.dt
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
@@ -100,9 +93,7 @@ class Simulation:
         speed = max(REACH_SPEED, 4.0 * fastest + float(np.abs(schedule[:, TOOL_SPEED]).max()))
         self.work.sleep[:] = 0
         self.work.rest[:] = np.where(model.exposed, 0, -1)
-        self.work.lost[:] = 0.0
-        self.team.run(advance, model, state, self.work, schedule, speed * model.dt)
-        np.add.at(state.fibre_damping, self.work.tiles[:, 0], self.work.lost)
+        self.team.run(advance, model, state, self.work, schedule, self.step, speed * model.dt)
         state.clock[0] += steps
         state.clock[1] = state.clock[0] * model.dt
         self._account_pressure(schedule)

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 
-DEFAULT_MASS_SCALING = 10.0
+DEFAULT_MASS_SCALING = 5.0
 
 
 class Solver(Section):
@@ -18,34 +18,31 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on all masses (inferred); left out without target_step_s: 10. "
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 5. "
         "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
         default=None,
         gt=0,
         le=1e-2,
-        description="Stable step to reach by adding mass where needed [s]. Either this or mass_scaling.",
+        description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
     fibre_damping: float = Field(
-        default=0.1,
+        default=0.2,
         ge=0,
-        le=2,
-        description="Damping along the fibres, fraction of critical of the highest fibre mode.",
+        le=10,
+        description="Damping along the fibres: a viscous tension of this times step times stiffness.",
     )
     step_safety: float = Field(default=0.8, gt=0, le=1, description="Step as a fraction of the stable one.")
-    outer_step_s: float | None = Field(
-        default=None,
-        gt=0,
-        le=1e-2,
-        description="Step of everything but the fibres' tension [s]; left out: by the solver's rule.",
+    step_s: float | None = Field(
+        default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
-    inner_steps: int | None = Field(
-        default=None,
-        ge=1,
-        le=1000,
-        description="Fibre steps in one outer step; left out: by the solver's rule.",
+    fibre_tension_allowed_N_mm: float = Field(
+        default=5.0,
+        ge=0,
+        le=1e4,
+        description="Fibre tension per width that the step is made stable for [N/mm]: it acts like a string's.",
     )
     contact_stiffness_N_mm3: float = Field(
         default=2.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
@@ -66,7 +63,7 @@ class Solver(Section):
         description="Energy error beyond which the run stops with exit code 3 [%].",
     )
     check_interval_steps: int = Field(
-        default=50, ge=1, le=1_000_000, description="Outer steps between two checks of energy and stability."
+        default=50, ge=1, le=1_000_000, description="Steps between two checks of energy and stability."
     )
 
     @model_validator(mode="before")

@@ -2,7 +2,8 @@
 
 All bounds are per area: a sheet of areal mass m with several stiffnesses has omega^2 <= the sum of theirs.
 Explicit steps with damping that lags half a step are stable for  omega dt <= 2 (sqrt(1 + z^2) - z),  z the
-damping ratio at omega. The inner step resolves the fibres; the outer one everything else.
+damping ratio at omega. Fibre tension is integrated implicitly and sets no limit along the fibres; across them
+it acts like a string's, with the tension that the step allows for.
 """
 
 from __future__ import annotations
@@ -15,21 +16,16 @@ def damped_limit(omega: float, ratio: float) -> float:
     return 2.0 / omega * (np.sqrt(1.0 + ratio * ratio) - ratio)
 
 
-def fibre_omega(eh: float, mass: float, spacing: float) -> float:
-    """Highest frequency of a fibre line: omega^2 = 4 E h / (m a^2); E h [N/mm], m [tonne/mm2], a [mm]."""
-    return float(np.sqrt(4.0 * eh / mass) / spacing)
-
-
 def ply_omega2(
-    shear: float, bend: tuple[float, float], mass: float, spacing: tuple[float, float], contact: float
+    shear: float, bend: tuple[float, float], tension: float, spacing: tuple[float, float], contact: float, mass: float
 ) -> float:
-    """Bound of omega^2 of a ply's slow forces.
+    """Bound of omega^2 of a ply's explicit forces.
 
-    Shear 4 N_s'(1/a1^2 + 1/a2^2)/m, bending 16 (D1/a1^4 + D2/a2^4)/m, contact 2 K/m with K the sum of the
+    Shear and tension across the fibres 4 (N_s' + T)(1/a1^2 + 1/a2^2)/m, T [N/mm], bending 16 (D1/a1^4 + D2/a2^4)/m, contact 2 K/m with K the sum of the
     contact stiffnesses [N/mm3] on its two faces.
     """
     a1, a2 = spacing
-    stretch = 4.0 * shear * (1 / a1**2 + 1 / a2**2)
+    stretch = 4.0 * (shear + tension) * (1 / a1**2 + 1 / a2**2)
     bending = 16.0 * (bend[0] / a1**4 + bend[1] / a2**4)
     return (stretch + bending + 2.0 * contact) / mass
 

@@ -17,6 +17,7 @@ from ddf.elements.shear import shear_energy
 from ddf.elements.tension import tension_energy
 from ddf.model import (
     CONTACT_DAMPING,
+    FIBRE_DAMPING,
     FRICTION,
     MASS_DAMPING,
     PLY,
@@ -119,7 +120,7 @@ def energies(model: Model, state: State) -> Energies:
             "tool_friction": float(ledger[TOOL_FRICTION]),
             "tool_damping": float(ledger[TOOL_DAMPING]),
             "mass_damping": float(ledger[MASS_DAMPING]),
-            "fibre_damping": float(state.fibre_damping.sum()),
+            "fibre_damping": float(ledger[FIBRE_DAMPING]),
         },
         work={"pressure": float(ledger[PRESSURE_WORK]), "tool": float(ledger[TOOL_WORK])},
     )
