@@ -68,7 +68,7 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_friction=friction.diaphragm_tool, fibre_damping=solver.fibre_damping, dt=dt,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, fibre_damping=solver.fibre_damping, dt=dt,
     )  # fmt: skip
     state = _initial_state(stack, model, places)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)
@@ -351,7 +351,8 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         stiffness = case.solver.contact_stiffness_N_mm3
         if {slave, master} == {0, top}:
             stiffness, damping = 0.5 * stiffness, 0.5 * damping
-        records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping))
+        reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
+        records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
         places.append(place.ravel())
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])

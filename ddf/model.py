@@ -85,6 +85,7 @@ PAIR = np.dtype(
         ("friction", np.float64),
         ("stiffness", np.float64),  # [N/mm3]
         ("damping", np.float64),  # [N s/mm3]
+        ("mass", np.float64),  # reduced areal mass of both sheets [tonne/mm2]
     ],
     align=True,
 )
@@ -118,6 +119,7 @@ class Model(NamedTuple):
     tool_offset: float  # half thickness of that sheet [mm]
     tool_stiffness: float
     tool_damping: float
+    tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
     fibre_damping: float  # z of `elements.tension`
     dt: float

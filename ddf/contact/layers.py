@@ -133,6 +133,8 @@ def layer_forces(
             sy += ou * uy + ov * vy - rate * ny
             sz += ou * uz + ov * vz - rate * nz
             k, c = pair.stiffness * area[i, j], pair.damping * area[i, j]
+            slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
+            c *= slow
             fn = max(0.0, -k * gap - c * sign * rate)
             tu, tv = u - anchor[0, i, j], v - anchor[1, i, j]
             px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
@@ -151,7 +153,7 @@ def layer_forces(
             out[0] += 0.5 * k * gap * gap
             out[1] += stored
             out[2] += before - stored - dt * (tx * sx + ty * sy + tz * sz)
-            out[3] -= dt * (fn + k * gap) * sign * rate
+            out[3] -= dt * (fn + k * gap) * sign * rate * slow
             fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
             fs[0, i, j] += fx
             fs[1, i, j] += fy

@@ -25,7 +25,7 @@ LONGEST_SLEEP = 16
 
 
 @njit(**FAST)
-def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out):
+def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out):
     """Force (fx, fy, fz) on one contact point and its distance; updates its anchor and the energies.
 
     p, v: position and velocity relative to the tool; out (4,): normal spring, tangential spring, friction and
@@ -37,17 +37,19 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out):
     if near >= 0.0:
         anchor[0] = FREE
         return 0.0, 0.0, 0.0, near
+    slow = 1.0 / (1.0 + 0.5 * c * dt / mass)  # damping acts on mid-step velocities
+    c *= slow
     fx = fy = fz = normal = 0.0
     if d1 < offset:
         rate = nx * v[0] + ny * v[1] + nz * v[2]
         n1 = max(0.0, k * (offset - d1) - c * rate)
         out[0] += 0.5 * k * (offset - d1) ** 2
-        out[3] -= dt * (n1 - k * (offset - d1)) * rate
+        out[3] -= dt * (n1 - k * (offset - d1)) * rate * slow
         fx, fy, fz, normal = n1 * nx, n1 * ny, n1 * nz, n1
     if pz < offset:
         n2 = max(0.0, k * (offset - pz) - c * v[2])
         out[0] += 0.5 * k * (offset - pz) ** 2
-        out[3] -= dt * (n2 - k * (offset - pz)) * v[2]
+        out[3] -= dt * (n2 - k * (offset - pz)) * v[2] * slow
         fz += n2
         normal += n2
         if pz < d1:
@@ -63,12 +65,12 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out):
     limit = mu * normal
     share = coulomb(length(tx, ty, tz), limit)
     tx, ty, tz = tx * share, ty * share, tz * share
+    before = length(sx - dt * vx, sy - dt * vy, sz - dt * vz)
     stretch = length(sx, sy, sz)
     keep = 1.0
     if share < 1.0:
         keep = min(1.0, limit / max(k * stretch, 1e-30))
         anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
-    before = length(sx - dt * vx, sy - dt * vy, sz - dt * vz)
     stored = 0.5 * k * keep * keep * stretch * stretch
     out[1] += stored
     out[2] += 0.5 * k * before * before - stored - dt * (tx * vx + ty * vy + tz * vz)
@@ -80,10 +82,10 @@ def tool_forces(x, v, f, carry, dx, dy, tool, origin, spacing, law, motion, reac
     """Add the forces of the contact points of cell rows low..high-1; returns the tool's work [N mm].
 
     x, v, f (3, n, m); carry (3, m + 2); dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping,
-    friction); motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
+    areal mass, friction); motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
     anchors (n-1, m-1, 4, 3); sleep (n-1, m-1) int16; out (4,) as in `_point`.
     """
-    offset, stiffness, damping, mu = law
+    offset, stiffness, damping, mass, mu = law
     z, speed = motion
     work = 0.0
     for i in range(low, min(high, x.shape[1] - 1)):
@@ -108,7 +110,8 @@ def tool_forces(x, v, f, carry, dx, dy, tool, origin, spacing, law, motion, reac
                     w00 * v[2, i, j] + w10 * v[2, i + 1, j] + w01 * v[2, i, j + 1] + w11 * v[2, i + 1, j + 1] - speed,
                 )
                 fx, fy, fz, near = _point(
-                    p, u, tool, origin, spacing, offset, stiffness * area, damping * area, mu, dt, anchors[i, j, q], out
+                    p, u, tool, origin, spacing, offset, stiffness * area, damping * area, mass * area, mu, dt,
+                    anchors[i, j, q], out,
                 )
                 nearest = min(nearest, near)
                 if near >= 0.0:

@@ -158,7 +158,7 @@ def _tool(model, state, work, row, b, dt, reach):
     carry = work.carry[b]
     carry[:] = 0.0
     out = np.zeros(4)
-    law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
+    law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_mass, model.tool_friction)
     done = tool_forces(
         vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), carry, dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
