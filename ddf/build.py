@@ -68,7 +68,7 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, fibre_damping=solver.fibre_damping, dt=dt,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, dt=dt,
     )  # fmt: skip
     state = _initial_state(stack, model, places)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)

@@ -8,7 +8,7 @@ the other in flat pools; `nodes[k]` is the first node of sheet k.
 ============== ===================== =========================================================================
 name           shape                 meaning [unit]
 ============== ===================== =========================================================================
-x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N]; between steps m dv/dt of the last step; sheet k is the slice
+x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] without fibre tension; sheet k is the slice
                                      3*node : 3*(node + rows*cols) seen as (3, rows, cols)
 place          (2, P)                where a contact slave stands on its master: grid coordinates (u, v)
 anchor         (2, P)                where its friction spring is anchored, same coordinates
@@ -31,8 +31,9 @@ from numba import njit
 
 PLY, DIAPHRAGM = 0, 1
 
-#: columns of the ledger: work done on a sheet and energy that left the sheets, per block of rows
-(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING, FIBRE_DAMPING) = range(8)
+#: columns of the ledger: work done on a sheet, energy that left the sheets, and (FIBRE_WORK) work
+#: that fibre tension did on the plies' motion, per block of rows [N mm]
+(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING, FIBRE_WORK) = range(8)
 LEDGER = 8
 #: columns of the springs: energy stored now in the contacts of a block (normal, tangential; tool likewise)
 (NORMAL_SPRING, TANGENTIAL_SPRING, TOOL_NORMAL_SPRING, TOOL_TANGENTIAL_SPRING) = range(4)
@@ -121,7 +122,6 @@ class Model(NamedTuple):
     tool_damping: float
     tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
-    fibre_damping: float  # z of `elements.tension`
     dt: float
 
 

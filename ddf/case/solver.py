@@ -28,12 +28,6 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
-    fibre_damping: float = Field(
-        default=0.2,
-        ge=0,
-        le=10,
-        description="Damping along the fibres: a viscous tension of this times step times stiffness.",
-    )
     step_safety: float = Field(default=0.8, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."

@@ -1,18 +1,20 @@
-"""One step: every force explicit, fibre tension by the trapezoidal rule.
+"""One step: every force explicit, fibre tension implicit along the fibre lines.
 
 Step n, of length dt (leapfrog: v lives half a step behind x):
 
-    1  f = shear + bending + tension + diaphragms + pressure + contact + tool  at x_n    blocks of rows
-    2  y = dt f / m;  diaphragms: v <- damping v + y, x <- x + dt v                      blocks of rows
-    3  plies: y <- (M + kappa K1)^-1 M y                                                 fibre lines
-    4  plies: y <- (M + kappa K2)^-1 M y                                                 fibre lines
-    5  plies: v <- damping v + y, x <- x + dt v                                          blocks of rows
+    1  f = shear + bending + diaphragms + pressure + contact + tool  at x_n, v_(n-1/2)     blocks of rows
+    2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+    3  plies: v <- step of the tension along family 1 (`elements.tension`)                  fibre lines
+    4  plies: v <- the same along family 2                                                  fibre lines
+    5  plies: x <- x + dt v                                                                 blocks of rows
 
 3 and 4 change places every other step. Each phase is one parallel region; blocks and bundles of lines are
-fixed, so the bits of the result do not depend on the number of threads. The design that this replaced, small
-inner steps for the tension between impulses of the slow forces (r-RESPA), was built and measured first: the
-impulses of stiff contact resonated with the fibres' waves, and at 5 mm a flat clamped stack lost 100 times
-the work done on it to friction and fibre damping; with 14 inner steps it also cost 10 times as much.
+fixed, so the bits of the result do not depend on the number of threads.
+
+Two other ways were built and measured before. Small inner steps of the tension between impulses of the other
+forces (r-RESPA) resonate: stiff contact's impulses excited the fibres' waves, and a flat clamped stack lost a
+hundred times the work done on it to friction; 14 inner steps also cost ten times as much. The trapezoidal
+rule with both families factored into one operator is unstable as soon as the ply is curved.
 """
 
 from __future__ import annotations
@@ -29,11 +31,11 @@ from ddf.elements.bending import bending_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
-from ddf.elements.tension import FAST, LINES, solve_lines, solve_rows, tension_forces
+from ddf.elements.tension import FAST, LINES, pull_lines, pull_rows
 from ddf.model import (
     CONTACT_DAMPING,
     DAMPING,
-    FIBRE_DAMPING,
+    FIBRE_WORK,
     FRICTION,
     MASS_DAMPING,
     NORMAL_SPRING,
@@ -84,9 +86,6 @@ def _internal(model, state, row, b, scratch):
         shear_forces(x, f, cell, model.shear_tables[sheet.shear], low, high, w)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
         bending_forces(x, f, bar1, bar2, triple1, triple2, sheet, low, high, w)
-        v = vectors(state.v, sheet)
-        lost = tension_forces(x, v, f, bar1, bar2, sheet, model.fibre_damping, model.dt, low, high, w)
-        state.ledger[b, FIBRE_DAMPING] += lost
     else:
         dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
@@ -198,74 +197,92 @@ def _collect(model, state, work, b):
 
 
 @njit(**FAST)
-def _move(x, v, y, mass, damping, dt):
-    """v <- damping v + y, x <- x + dt v, one component of a row; returns sum m v^2 before."""
-    lost = 0.0
+def _kick_row(v, f, inverse_mass, mass, damping, dt):
+    """v <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick."""
+    square = power = 0.0
     for j in range(v.shape[0]):
-        lost += mass[j] * v[j] * v[j]
-        v[j] = damping * v[j] + y[j]
-        x[j] += dt * v[j]
-    return lost
+        square += mass[j] * v[j] * v[j]
+        power += f[j] * v[j]
+        v[j] = damping * v[j] + dt * inverse_mass[j] * f[j]
+    return square, power
 
 
 @njit(**FAST)
-def _scale(f, factor, dt):
-    for j in range(f.shape[0]):
-        f[j] *= dt * factor[j]
+def _drift_row(x, v, f, mass, dt):
+    """x <- x + dt v, one component of a row; returns sum m v^2 and sum f v."""
+    square = power = 0.0
+    for j in range(v.shape[0]):
+        square += mass[j] * v[j] * v[j]
+        power += f[j] * v[j]
+        x[j] += dt * v[j]
+    return square, power
 
 
 @njit(**FAST)
 def _kick(model, state, b, damping):
-    """Turn a block's forces into velocity changes (kept in f); diaphragms move on."""
+    """Kick a block's rows by its forces; diaphragms move on."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    f, inverse = vectors(state.f, sheet), scalars(model.inverse_mass, sheet)
+    x, v, f = vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet)
+    inverse, mass = scalars(model.inverse_mass, sheet), scalars(model.mass, sheet)
+    dt = model.dt
+    square = power = 0.0
     for i in range(block.low, block.high):
         for c in range(3):
-            _scale(f[c, i], inverse[i], model.dt)
-    if sheet.kind != PLY:
-        lost = _move_rows(model, state, sheet, block.low, block.high, damping)
-        state.ledger[b, MASS_DAMPING] += lost
+            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, dt)
+            square += p
+            power += q
+            if sheet.kind != PLY:
+                _drift_row(x[c, i], v[c, i], f[c, i], mass[i], dt)
+    state.ledger[b, MASS_DAMPING] += 0.5 * square * (1.0 - damping * damping)
+    if sheet.kind == PLY:
+        state.ledger[b, FIBRE_WORK] -= 0.5 * damping * (damping * square + dt * power)
 
 
 @njit(**FAST)
-def _move_rows(model, state, sheet, low, high, damping):
-    """Move rows by the velocity changes in f; f becomes the effective force m dv/dt. Returns the energy lost."""
+def _drift(model, state, b):
+    """Move a ply's block on. With `_kick` the ledger gets the work of the tension in this step:
+
+    change of kinetic energy less that of the other forces, dt f (v_before + v_after)/2.
+    """
+    block = model.blocks[b]
+    sheet = model.sheets[block.sheet]
     x, v, f = vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet)
     mass = scalars(model.mass, sheet)
-    lost = 0.0
-    for i in range(low, high):
+    square = power = 0.0
+    for i in range(block.low, block.high):
         for c in range(3):
-            lost += _move(x[c, i], v[c, i], f[c, i], mass[i], damping, model.dt)
-            _scale(f[c, i], mass[i], 1.0 / model.dt)
-    return 0.5 * lost * (1.0 - damping * damping)
+            p, q = _drift_row(x[c, i], v[c, i], f[c, i], mass[i], model.dt)
+            square += p
+            power += q
+    state.ledger[b, FIBRE_WORK] += 0.5 * (square - model.dt * power)
 
 
 @njit(**FAST)
-def _solve(model, state, work, member, family, k, low, high):
-    """Trapezoidal step of fibre tension along one bundle of lines of a family."""
+def _pull(model, state, work, member, family, k, low, high):
+    """Implicit step of fibre tension along one bundle of lines of a family."""
     sheet = model.sheets[k]
-    x, y = vectors(state.x, sheet), vectors(state.f, sheet)
+    x, v = vectors(state.x, sheet), vectors(state.v, sheet)
     inverse = scalars(model.inverse_mass, sheet)
-    kappa = (0.25 + 0.5 * model.fibre_damping) * model.dt * model.dt
-    longest = sheet.rows if family == 1 else sheet.cols
-    rows = 6 * (longest + 1) + 2
+    dt = model.dt
+    rows = 6 * ((sheet.rows if family == 1 else sheet.cols) + 1) + 2
     lines = work.lines[member, : rows * LINES].reshape((rows, LINES))
     if family == 1:
-        solve_lines(x, y, inverse, scalars(model.bar1, sheet), kappa * sheet.eh1 / sheet.a1, low, high, lines)
+        law = (1.0 / sheet.a1, dt * dt * sheet.eh1 / sheet.a1, 0.5 * dt * sheet.eh1)
+        pull_lines(x, v, inverse, scalars(model.bar1, sheet), law, low, high, lines)
     else:
+        law = (1.0 / sheet.a2, dt * dt * sheet.eh2 / sheet.a2, 0.5 * dt * sheet.eh2)
         turned = work.turned[member, : 8 * sheet.cols * LINES].reshape((8, sheet.cols, LINES))
-        bar = scalars(model.bar2, sheet)
-        solve_rows(x, y, inverse, bar, kappa * sheet.eh2 / sheet.a2, low, high, turned, lines)
+        pull_rows(x, v, inverse, scalars(model.bar2, sheet), law, low, high, turned, lines)
 
 
 @njit(**FAST)
-def _solve_family(model, state, work, sync, base, member, family):
+def _pull_family(model, state, work, sync, base, member, family):
     """All bundles of a family, shared among the members."""
     bundles = work.bundles1 if family == 1 else work.bundles2
     t = draw(sync, base)
     while t < bundles.shape[0]:
-        _solve(model, state, work, member, family, bundles[t, 0], bundles[t, 1], bundles[t, 2])
+        _pull(model, state, work, member, family, bundles[t, 0], bundles[t, 1], bundles[t, 2])
         t = draw(sync, base)
 
 
@@ -297,16 +314,13 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         barrier(sync, members)
         early = 1 + (first + n) % 2
         for family in (early, 3 - early):
-            _solve_family(model, state, work, sync, base, member, family)
+            _pull_family(model, state, work, sync, base, member, family)
             base += (work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]) + members
             barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:
-            block = model.blocks[b]
-            sheet = model.sheets[block.sheet]
-            if sheet.kind == PLY:
-                lost = _move_rows(model, state, sheet, block.low, block.high, row[DAMPING])
-                state.ledger[b, MASS_DAMPING] += lost
+            if model.sheets[model.blocks[b].sheet].kind == PLY:
+                _drift(model, state, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)

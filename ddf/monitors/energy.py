@@ -1,7 +1,9 @@
 """Energies of a scene by kind and sheet, and their balance.
 
 kinetic + strain + contact springs + dissipated = work of pressures and tool, up to the error of the steps.
-Kinetic energy is taken in mid-step: velocities are advanced by half a kick with the last forces.
+Kinetic energy is taken in mid-step: velocities are advanced by half a kick with the last forces. What the
+implicit steps of fibre tension dissipate (`fibre_waves`) is the work done on the tension less the strain energy
+that the fibres hold; plies start unstretched.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from ddf.elements.shear import shear_energy
 from ddf.elements.tension import tension_energy
 from ddf.model import (
     CONTACT_DAMPING,
-    FIBRE_DAMPING,
+    FIBRE_WORK,
     FRICTION,
     MASS_DAMPING,
     PLY,
@@ -100,7 +102,10 @@ def sheet_strain(model: Model, state: State, k: int) -> dict[str, float]:
 
 
 def kinetic_energy(model: Model, state: State, k: int) -> float:
-    """Kinetic energy of sheet k [N mm]."""
+    """Kinetic energy of sheet k [N mm]; a ply's is that of its last half step, for its forces lack the tension."""
+    if model.sheets[k]["kind"] == PLY:
+        v = sheet_vectors(model, state.v, k)
+        return float(0.5 * np.sum(sheet_scalars(model, model.mass, k) * (v * v).sum(axis=0)))
     v, f = sheet_vectors(model, state.v, k), sheet_vectors(model, state.f, k)
     middle = v + 0.5 * model.dt * sheet_scalars(model, model.inverse_mass, k) * f
     return float(0.5 * np.sum(sheet_scalars(model, model.mass, k) * (middle * middle).sum(axis=0)))
@@ -110,9 +115,11 @@ def energies(model: Model, state: State) -> Energies:
     """All energies of a state."""
     ledger = state.ledger.sum(axis=0)
     count = model.sheets.size
+    strain = tuple(sheet_strain(model, state, k) for k in range(count))
+    tension = sum(s.get("fibre_tension", 0.0) for s in strain)
     return Energies(
         kinetic=tuple(kinetic_energy(model, state, k) for k in range(count)),
-        strain=tuple(sheet_strain(model, state, k) for k in range(count)),
+        strain=strain,
         contact_spring=float(state.springs.sum()),
         dissipated={
             "friction": float(ledger[FRICTION]),
@@ -120,7 +127,7 @@ def energies(model: Model, state: State) -> Energies:
             "tool_friction": float(ledger[TOOL_FRICTION]),
             "tool_damping": float(ledger[TOOL_DAMPING]),
             "mass_damping": float(ledger[MASS_DAMPING]),
-            "fibre_damping": float(ledger[FIBRE_DAMPING]),
+            "fibre_waves": -float(ledger[FIBRE_WORK]) - tension,
         },
         work={"pressure": float(ledger[PRESSURE_WORK]), "tool": float(ledger[TOOL_WORK])},
     )
