@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 
 from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
+from ddf.contact.layers import UNKNOWN
 from ddf.contact.patch import patch_centres
 from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
@@ -52,7 +53,7 @@ def build_scene(case: Case) -> Scene:
     limit = _step_limit(case, stack, terms, masses, tangents, tool_field is not None)
     dt = limit if case.solver.step_s is None else case.solver.step_s
     pools = _pools(case, stack, sheets, masses)
-    pairs, exposed, places = _pairs(case, stack, masses, sheets)
+    pairs, exposed, places, anchors = _pairs(case, stack, masses, sheets)
     blocks = _blocks(sheets)
     friction, solver = case.friction, case.solver
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
@@ -70,7 +71,7 @@ def build_scene(case: Case) -> Scene:
         ),
         tool_mass=masses[0], tool_friction=friction.diaphragm_tool, dt=dt,
     )  # fmt: skip
-    state = _initial_state(stack, model, places)
+    state = _initial_state(stack, model, places, anchors)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)
     face = stack.z[0] - 0.5 * stack.thickness[0]
     return Scene(
@@ -340,7 +341,7 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
     # each diaphragm against the other at half stiffness: one way only, small errors in how a graded grid
     # passes on a pressure push the whole stack to one side
     wanted += [(top, 0, 1.0, friction.diaphragm_diaphragm), (0, top, -1.0, friction.diaphragm_diaphragm)]
-    records, exposed, places = [], [], []
+    records, exposed, places, anchors = [], [], [], []
     first = buffer = span = 0
     for slave, master, sign, mu in wanted:
         follow, place = _follow(stack, slave, master)
@@ -354,14 +355,15 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
-        places.append(place.ravel())
+        places.append(np.concatenate([place, np.full((1, *follow.shape), UNKNOWN)]).ravel())
+        anchors.append(place.ravel())
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
         size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
         blocks = math.ceil(int(sheets[slave]["rows"]) / size)
         first += follow.size
         buffer += 3 * n * m * blocks
         span += n * blocks
-    return np.array(records, dtype=PAIR), np.concatenate(exposed), np.concatenate(places)
+    return np.array(records, dtype=PAIR), np.concatenate(exposed), np.concatenate(places), np.concatenate(anchors)
 
 
 def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], FloatArray]:
@@ -380,7 +382,7 @@ def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], 
     return follow, place
 
 
-def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
+def _initial_state(stack: _Stack, model: Model, places: FloatArray, friction: FloatArray) -> State:
     meshes = [stack.diaphragm, *stack.plies, stack.diaphragm]
     parts = []
     for mesh, z in zip(meshes, stack.z, strict=True):
@@ -394,7 +396,7 @@ def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
     anchors[..., 0] = FREE
     return State(
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
-        place=places.copy(), anchor=places.copy(), tool_anchor=anchors,
+        place=places, anchor=friction, tool_anchor=anchors,
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
         clock=np.zeros(2),
     )  # fmt: skip

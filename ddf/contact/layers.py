@@ -7,7 +7,7 @@ r = x_s - N_k x_k:
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     place  r^a = contravariant components of r (metric of S_1, S_2): the Newton step
     slip   s = (place - anchor)^a S_a;        friction spring of stiffness K A, Coulomb limit mu N
-    rate   s' = (v_s - N_k v_k)_t + d n.(N_k,b v_k) S^b: the normal turns with the master, and r with it
+    rates  of gap and slip are their changes since the last step over dt, so they turn with the master
 
 The force f on the slave is balanced on the master's nodes by
 
@@ -33,6 +33,7 @@ from ddf.contact.patch import interpolate, spread, weights
 from ddf.elements.tension import FAST
 
 LONGEST_REST = 8
+UNKNOWN = 1.0e30  # gap of a node that has rested
 DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost, not pressed
 
 
@@ -63,21 +64,21 @@ def _touch(span, i, j):
 
 
 @njit(**FAST)
-def layer_forces(
-    xs, vs, fs, area, xm, vm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, out
-):
+def layer_forces(xs, fs, area, xm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, out):
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
-    xs, vs, fs (3, n, m) slave; xm, vm (3, N, M) master; area (n, m) [mm2]; cell (N, M) area of the master's
-    cells; centre (N, M, 2) from `patch_centres`; place, anchor (2, n, m) updated; rest (n, m) int8: steps to
-    rest, negative for nodes that are not followed; buffer (3, N, M), span (N, 2); reach: way that a node can
-    go in a step [mm]. out (4,): normal and tangential spring energy now, friction and damping loss of this
-    step [N mm].
+    xs, fs (3, n, m) slave; xm (3, N, M) master; area (n, m) [mm2]; cell (N, M) area of the master's cells;
+    centre (N, M, 2) from `patch_centres`; place (3, n, m): (u, v) and gap of the last step, anchor (2, n, m),
+    both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed; buffer (3, N, M),
+    span (N, 2); reach: way that a node can go in a step [mm]. out (4,): normal and tangential spring energy
+    now, friction and damping loss of this step [N mm].
     """
     n_rows, n_cols = xm.shape[1], xm.shape[2]
     sign, offset, mu = pair.sign, pair.offset, pair.friction
-    x0, x1, x2, v0, v1, v2 = xm[0], xm[1], xm[2], vm[0], vm[1], vm[2]
+    x0, x1, x2 = xm[0], xm[1], xm[2]
     b0, b1, b2 = buffer[0], buffer[1], buffer[2]
+    slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
+    inverse_dt = 1.0 / dt
     for i in range(low, high):
         for j in range(xs.shape[2]):
             if rest[i, j] != 0:
@@ -86,11 +87,11 @@ def layer_forces(
                 continue
             u0, w0 = place[0, i, j], place[1, i, j]
             near_i, near_j = min(max(int(u0 + 0.5), 0), n_rows - 1), min(max(int(w0 + 0.5), 0), n_cols - 1)
-            p, q = np.int64(centre[near_i, near_j, 0]), np.int64(centre[near_i, near_j, 1])
-            if p < 0:
+            if centre[near_i, near_j, 0] < 0:
                 rest[i, j] = LONGEST_REST
                 continue
-            a, b = weights(u0 - p), weights(w0 - q)
+            p, q = np.uint64(centre[near_i, near_j, 0]), np.uint64(centre[near_i, near_j, 1])
+            a, b = weights(u0 - np.float64(p)), weights(w0 - np.float64(q))
             sx, ux, vx = interpolate(x0, p, q, a, b)
             sy, uy, vy = interpolate(x1, p, q, a, b)
             sz, uz, vz = interpolate(x2, p, q, a, b)
@@ -110,50 +111,42 @@ def layer_forces(
             nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
             d = rx * nx + ry * ny + rz * nz
             gap = sign * d - offset
+            last = place[2, i, j]
+            place[2, i, j] = gap
             if gap >= 0.0:
                 anchor[0, i, j] = u
                 anchor[1, i, j] = v
                 rest[i, j] = min(LONGEST_REST, int(gap / reach))
+                if rest[i, j] > 0:
+                    place[2, i, j] = UNKNOWN
                 continue
             inside = u >= 0.0 and v >= 0.0 and u < n_rows - 1.0 and v < n_cols - 1.0
             if not inside or gap < -DEEPEST * offset or cell[int(max(u, 0.0)), int(max(v, 0.0))] <= 0.0:
                 anchor[0, i, j] = u
                 anchor[1, i, j] = v
                 continue
-            mx, mux, mvx = interpolate(v0, p, q, a, b)
-            my, muy, mvy = interpolate(v1, p, q, a, b)
-            mz, muz, mvz = interpolate(v2, p, q, a, b)
-            sx = vs[0, i, j] - mx - du * mux - dv * mvx
-            sy = vs[1, i, j] - my - du * muy - dv * mvy
-            sz = vs[2, i, j] - mz - du * muz - dv * mvz
-            rate = sx * nx + sy * ny + sz * nz
-            nu, nv = nx * mux + ny * muy + nz * muz, nx * mvx + ny * mvy + nz * mvz
-            ou, ov = d * (gvv * nu - guv * nv) * inv, d * (guu * nv - guv * nu) * inv
-            sx += ou * ux + ov * vx - rate * nx
-            sy += ou * uy + ov * vy - rate * ny
-            sz += ou * uz + ov * vz - rate * nz
-            k, c = pair.stiffness * area[i, j], pair.damping * area[i, j]
-            slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
-            c *= slow
-            fn = max(0.0, -k * gap - c * sign * rate)
-            tu, tv = u - anchor[0, i, j], v - anchor[1, i, j]
+            k, c = pair.stiffness * area[i, j], pair.damping * area[i, j] * slow
+            rate = (gap - last) * inverse_dt if last < UNKNOWN else 0.0
+            fn = max(0.0, -k * gap - c * rate)
+            au, av = u0 - anchor[0, i, j], w0 - anchor[1, i, j]
+            tu, tv = au + du, av + dv
+            mx, my, mz = du * ux + dv * vx, du * uy + dv * vy, du * uz + dv * vz
             px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
-            tx, ty, tz = -k * px - c * sx, -k * py - c * sy, -k * pz - c * sz
+            cs = c * inverse_dt
+            tx, ty, tz = -k * px - cs * mx, -k * py - cs * my, -k * pz - cs * mz
             share = coulomb(length(tx, ty, tz), mu * fn)
             tx, ty, tz = tx * share, ty * share, tz * share
-            au, av = u0 - anchor[0, i, j], w0 - anchor[1, i, j]
-            before = 0.5 * k * (au * au * guu + 2.0 * au * av * guv + av * av * gvv)
-            stretch = length(px, py, pz)
-            keep = 1.0
+            before = au * au * guu + 2.0 * au * av * guv + av * av * gvv
+            after = px * px + py * py + pz * pz
             if share < 1.0:  # the anchor follows until the spring alone would carry the friction force
-                keep = min(1.0, mu * fn / max(k * stretch, 1e-30))
+                keep = min(1.0, mu * fn / max(k * np.sqrt(after), 1e-30))
                 anchor[0, i, j] = u - keep * tu
                 anchor[1, i, j] = v - keep * tv
-            stored = 0.5 * k * keep * keep * stretch * stretch
+                after *= keep * keep
             out[0] += 0.5 * k * gap * gap
-            out[1] += stored
-            out[2] += before - stored - dt * (tx * sx + ty * sy + tz * sz)
-            out[3] -= dt * (fn + k * gap) * sign * rate * slow
+            out[1] += 0.5 * k * after
+            out[2] += 0.5 * k * (before - after) - (tx * mx + ty * my + tz * mz)
+            out[3] -= dt * (fn + k * gap) * rate * slow
             fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
             fs[0, i, j] += fx
             fs[1, i, j] += fy
@@ -161,9 +154,9 @@ def layer_forces(
             cu = d * (tx * ux + ty * uy + tz * uz)
             cv = d * (tx * vx + ty * vy + tz * vz)
             eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
-            _touch(span, p - 1, q)
-            _touch(span, p, q)
-            _touch(span, p + 1, q)
+            _touch(span, np.int64(p) - 1, np.int64(q))
+            _touch(span, np.int64(p), np.int64(q))
+            _touch(span, np.int64(p) + 1, np.int64(q))
             k0 = (a[0] + du * a[3], dv * a[0], eu * a[3], ev * a[0])
             k1 = (a[1] + du * a[4], dv * a[1], eu * a[4], ev * a[1])
             k2 = (a[2] + du * a[5], dv * a[2], eu * a[5], ev * a[2])

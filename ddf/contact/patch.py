@@ -15,6 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+ONE = np.uint64(1)
+
 
 @njit(inline="always")
 def weights(t):
@@ -25,10 +27,14 @@ def weights(t):
 
 @njit(inline="always")
 def interpolate(y, i, j, a, b):
-    """One component at a place, and its derivatives along u and v; y (N, M), a and b from `weights`."""
-    y00, y01, y02 = y[i - 1, j - 1], y[i - 1, j], y[i - 1, j + 1]
-    y10, y11, y12 = y[i, j - 1], y[i, j], y[i, j + 1]
-    y20, y21, y22 = y[i + 1, j - 1], y[i + 1, j], y[i + 1, j + 1]
+    """One component at a place, and its derivatives along u and v; y (N, M), a and b from `weights`.
+
+    i, j unsigned: numba then does without the test for negative indices.
+    """
+    i0, i2, j0, j2 = i - ONE, i + ONE, j - ONE, j + ONE
+    y00, y01, y02 = y[i0, j0], y[i0, j], y[i0, j2]
+    y10, y11, y12 = y[i, j0], y[i, j], y[i, j2]
+    y20, y21, y22 = y[i2, j0], y[i2, j], y[i2, j2]
     r0 = b[0] * y00 + b[1] * y01 + b[2] * y02
     r1 = b[0] * y10 + b[1] * y11 + b[2] * y12
     r2 = b[0] * y20 + b[1] * y21 + b[2] * y22
@@ -44,15 +50,20 @@ def interpolate(y, i, j, a, b):
 
 @njit(inline="always")
 def spread(buffer, i, j, b, force, couple, w0, w1, w2):
-    """Add  -W f + Q  to nine nodes, one component; rows k have W = w_k[0] b + w_k[1] b', Q likewise.
-
-    w_k = (W along b, W along b', Q along b, Q along b').
-    """
-    for l in range(3):
-        d0, d1 = (b[0], b[3]) if l == 0 else ((b[1], b[4]) if l == 1 else (b[2], b[5]))
-        buffer[i - 1, j - 1 + l] += -(w0[0] * d0 + w0[1] * d1) * force + (w0[2] * d0 + w0[3] * d1) * couple
-        buffer[i, j - 1 + l] += -(w1[0] * d0 + w1[1] * d1) * force + (w1[2] * d0 + w1[3] * d1) * couple
-        buffer[i + 1, j - 1 + l] += -(w2[0] * d0 + w2[1] * d1) * force + (w2[2] * d0 + w2[3] * d1) * couple
+    """Add  -W f + Q c  to nine nodes, one component; row k has W = w_k[0] b + w_k[1] b', Q = w_k[2] b + w_k[3] b'."""
+    i0, i2, j0, j2 = i - ONE, i + ONE, j - ONE, j + ONE
+    p0, q0 = w0[2] * couple - w0[0] * force, w0[3] * couple - w0[1] * force
+    p1, q1 = w1[2] * couple - w1[0] * force, w1[3] * couple - w1[1] * force
+    p2, q2 = w2[2] * couple - w2[0] * force, w2[3] * couple - w2[1] * force
+    buffer[i0, j0] += p0 * b[0] + q0 * b[3]
+    buffer[i0, j] += p0 * b[1] + q0 * b[4]
+    buffer[i0, j2] += p0 * b[2] + q0 * b[5]
+    buffer[i, j0] += p1 * b[0] + q1 * b[3]
+    buffer[i, j] += p1 * b[1] + q1 * b[4]
+    buffer[i, j2] += p1 * b[2] + q1 * b[5]
+    buffer[i2, j0] += p2 * b[0] + q2 * b[3]
+    buffer[i2, j] += p2 * b[1] + q2 * b[4]
+    buffer[i2, j2] += p2 * b[2] + q2 * b[5]
 
 
 def patch_centres(exists: NDArray[np.bool_]) -> NDArray[np.int32]:

@@ -128,16 +128,15 @@ def _layers(model, state, work, b, dt, reach):
         buffer, span = _buffer(work, model, pair, index)
         clear_buffer(buffer, span)
         n = slave.rows * slave.cols
-        shape = (2, slave.rows, slave.cols)
         first = pair.first
         layer_forces(
-            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), scalars(model.area, slave),
-            vectors(state.x, master), vectors(state.v, master), scalars(model.cell, master),
+            vectors(state.x, slave), vectors(state.f, slave), scalars(model.area, slave),
+            vectors(state.x, master), scalars(model.cell, master),
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
             ),
-            state.place[2 * first : 2 * (first + n)].reshape(shape),
-            state.anchor[2 * first : 2 * (first + n)].reshape(shape),
+            state.place[3 * first : 3 * (first + n)].reshape((3, slave.rows, slave.cols)),
+            state.anchor[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols)),
             work.rest[first : first + n].reshape((slave.rows, slave.cols)),
             buffer, span, pair, reach, dt, block.low, block.high, out,
         )  # fmt: skip
