@@ -21,13 +21,25 @@ from ddf.mesh.diaphragm import DiaphragmMesh, mesh_diaphragm
 from ddf.mesh.distance import DistanceField, distance_field
 from ddf.mesh.ply import PlyMesh, mesh_ply
 from ddf.mesh.tool import TriangleMesh, build_tool
-from ddf.model import BLOCK, DIAPHRAGM, LEDGER, PAIR, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, SHEET, SPRINGS, Model, State
+from ddf.model import (
+    BLOCK,
+    DIAPHRAGM,
+    LEDGER,
+    PAIR,
+    PLY,
+    PRESSURE_BOTTOM,
+    PRESSURE_TOP,
+    SHEET,
+    SPRINGS,
+    Model,
+    State,
+)
 from ddf.scene import Scene, SheetInfo
 
 FloatArray = NDArray[np.float64]
 
 BLOCKS_A_SHEET = 12
-COVER_MARGIN_MM = 40.0  # nodes nearer than this to the edge of a ply between two sheets are followed
+COVER_MARGIN_MM = 30.0  # nodes nearer than this to the edge of a ply between two sheets are followed
 TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
 
@@ -117,9 +129,7 @@ def _mesh_stack(case: Case) -> _Stack:
     for ply in case.plies:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm
         shape = np.asarray(outline) - np.asarray(ply.offset_mm)
-        plies.append(
-            mesh_ply(shape, holes, slits, ply.orientation_deg, ply.element_mm, tuple(ply.offset_mm), ply.name)
-        )
+        plies.append(mesh_ply(shape, holes, slits, ply.orientation_deg, ply.element_mm, tuple(ply.offset_mm), ply.name))
     d = case.diaphragms
     corners = np.concatenate([np.asarray(ply.outline_mm(), dtype=float) for ply in case.plies])
     low, high = corners.min(axis=0) - d.margin_mm, corners.max(axis=0) + d.margin_mm
@@ -158,9 +168,7 @@ def _nominal_height(tool: Tool, mesh: TriangleMesh) -> float:
     return float(mesh.top_mm) if tool.height_mm is None else tool.height_mm
 
 
-def _masses(
-    case: Case, stack: _Stack, density: float, tangents: list[float]
-) -> tuple[list[float], list[float]]:
+def _masses(case: Case, stack: _Stack, density: float, tangents: list[float]) -> tuple[list[float], list[float]]:
     """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2]."""
     solver = case.solver
     scales = []

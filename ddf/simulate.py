@@ -80,6 +80,10 @@ class Simulation:
             for k in diaphragms
         }
 
+    def recount(self) -> None:
+        """Take the state as it is now (after it was read from a checkpoint) as the start of the next batch."""
+        self._volumes = self._swept()
+
     def fastest(self, k: int) -> float:
         """Largest speed in sheet k [mm/s]."""
         return float(np.sqrt(_largest_square(sheet_vectors(self.model, self.state.v, k))))
@@ -90,13 +94,14 @@ class Simulation:
         times = (self.step + np.arange(steps)) * model.dt
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
         fastest = max(self.fastest(k) for k in range(model.sheets.size))
-        speed = max(REACH_SPEED, 4.0 * fastest + float(np.abs(schedule[:, TOOL_SPEED]).max()))
+        speed = max(REACH_SPEED, 4.0 * fastest + float(np.abs(schedule[:, TOOL_SPEED]).max(initial=0.0)))
         self.work.sleep[:] = 0
         self.work.rest[:] = np.where(model.exposed, 0, -1)
         self.team.run(advance, model, state, self.work, schedule, self.step, speed * model.dt)
         state.clock[0] += steps
         state.clock[1] = state.clock[0] * model.dt
-        self._account_pressure(schedule)
+        if steps:
+            self._account_pressure(schedule)
 
     def _account_pressure(self, schedule: np.ndarray) -> None:
         """Work of the pressures over the batch: the mean of both ends times the swept volume."""

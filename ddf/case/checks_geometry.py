@@ -33,9 +33,7 @@ def ply_problems(ply: Ply, path: KeyPath, frame: Frame | None) -> Iterator[Probl
         yield from _cuts(ply, path)
 
 
-def _in_frame(
-    outline: np.ndarray, ply: Ply, path: KeyPath, outline_path: KeyPath, frame: Frame
-) -> Iterator[Problem]:
+def _in_frame(outline: np.ndarray, ply: Ply, path: KeyPath, outline_path: KeyPath, frame: Frame) -> Iterator[Problem]:
     half = 0.5 * np.array([frame.length_mm, frame.width_mm]) - FRAME_MARGIN_MM
     beyond = (np.abs(outline) - half).max(axis=0)
     if (beyond <= 1e-9).all():

@@ -17,9 +17,7 @@ class Frame(Section):
 class Diaphragms(Section):
     """Both diaphragms: the same material, thickness and mesh above and below the plies."""
 
-    material: str = Field(
-        default="silicone-ogden", description="A preset or a name of [materials.*], hyperelastic."
-    )
+    material: str = Field(default="silicone-ogden", description="A preset or a name of [materials.*], hyperelastic.")
     thickness_mm: float = Field(default=1.5, gt=0, le=20, description="Thickness before any stretch [mm].")
     pre_stretch: float = Field(
         default=1.0,
@@ -36,10 +34,10 @@ class Diaphragms(Section):
     )
     element_mm: float = Field(default=2.5, ge=0.2, le=100, description="Element size under the plies [mm].")
     element_max_mm: float = Field(
-        default=20.0, ge=0.2, le=500, description="Largest element, towards the frame [mm] (inferred)."
+        default=30.0, ge=0.2, le=500, description="Largest element, towards the frame [mm] (inferred)."
     )
     growth: float = Field(
-        default=1.2, ge=1.01, le=2, description="Largest size ratio of neighbouring elements (inferred)."
+        default=1.3, ge=1.01, le=2, description="Largest size ratio of neighbouring elements (inferred)."
     )
     margin_mm: float = Field(
         default=15.0,
@@ -56,6 +54,4 @@ class Friction(Section):
     ply_ply: float = Field(default=0.28, ge=0, le=5, description="Ply on ply.")
     ply_diaphragm: float = Field(default=0.52, ge=0, le=5, description="Ply on diaphragm.")
     diaphragm_diaphragm: float = Field(default=0.60, ge=0, le=5, description="Diaphragm on diaphragm.")
-    diaphragm_tool: float = Field(
-        default=0.30, ge=0, le=5, description="Diaphragm on tool and platform (inferred)."
-    )
+    diaphragm_tool: float = Field(default=0.30, ge=0, le=5, description="Diaphragm on tool and platform (inferred).")

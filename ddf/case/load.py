@@ -107,9 +107,7 @@ def _parse(text: str, file: str) -> dict[str, Any]:
         raise _refusal(file, "not valid TOML: tables or lists are nested too deep", "") from None
 
 
-def _build(
-    raw: dict[str, Any], file: str, lines: Lines, changes: Sequence[Override], faults: list[Fault]
-) -> Case:
+def _build(raw: dict[str, Any], file: str, lines: Lines, changes: Sequence[Override], faults: list[Fault]) -> Case:
     """Validate the tables and return the case, or raise all faults in the order of their lines."""
     raw, problems = _with_tool_path(raw, Path(file).parent)
     case = None

@@ -14,7 +14,7 @@ class Output(Section):
         default=4, ge=1, le=1000, description="Frames written in each stage, the last at its end."
     )
     history_interval_steps: int = Field(
-        default=50, ge=1, le=1_000_000, description="Outer steps between two rows of history.csv."
+        default=200, ge=1, le=1_000_000, description="Outer steps between two rows of history.csv."
     )
     vtu: bool = Field(default=True, description="Whether to write the frames for ParaView.")
     pictures: bool = Field(default=True, description="Whether to draw the pictures.")

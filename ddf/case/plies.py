@@ -14,12 +14,8 @@ Side = Annotated[float, Field(gt=0, le=10_000)]
 class Ply(Section):
     """One sheet of woven fabric: outline, holes and slits about its centre, and its fibres' direction."""
 
-    name: Name = Field(
-        description="Unique name, used in file names; left out: ply-1, ply-2, ... by position."
-    )
-    material: str = Field(
-        default="plain-weave-6k-320", description="A preset or a name of [materials.*], woven."
-    )
+    name: Name = Field(description="Unique name, used in file names; left out: ply-1, ply-2, ... by position.")
+    material: str = Field(default="plain-weave-6k-320", description="A preset or a name of [materials.*], woven.")
     orientation_deg: float = Field(
         default=0.0,
         ge=-360,

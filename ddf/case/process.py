@@ -51,8 +51,8 @@ class Breakpoints(Section):
     box_pressure_kPa: Pressures | None = Field(
         default=None, description="Absolute pressure in the box [kPa]; left out: atmosphere."
     )
-    tool_lift_mm: Annotated[tuple[Lift, ...], Field(strict=False, min_length=2, max_length=10_000)] | None = (
-        Field(default=None, description="Lift of the platform above its start [mm]; left out: 0.")
+    tool_lift_mm: Annotated[tuple[Lift, ...], Field(strict=False, min_length=2, max_length=10_000)] | None = Field(
+        default=None, description="Lift of the platform above its start [mm]; left out: 0."
     )
     ramp: Literal["smooth", "linear"] = Field(
         default="linear",
@@ -63,15 +63,11 @@ class Breakpoints(Section):
 class Process(Section):
     """The loading: starts with cavity and box at atmosphere and lift 0. Either stages or breakpoints."""
 
-    atmosphere_kPa: float = Field(
-        default=101.325, gt=0, le=1000, description="Pressure of the surroundings [kPa]."
-    )
+    atmosphere_kPa: float = Field(default=101.325, gt=0, le=1000, description="Pressure of the surroundings [kPa].")
     stages: Annotated[tuple[Stage, ...], Field(strict=False, min_length=1, max_length=100)] | None = Field(
         default=None, description="Stages in order. Either this or breakpoints."
     )
-    breakpoints: Breakpoints | None = Field(
-        default=None, description="Histories in lists. Either this or stages."
-    )
+    breakpoints: Breakpoints | None = Field(default=None, description="Histories in lists. Either this or stages.")
 
     @property
     def duration_s(self) -> float:

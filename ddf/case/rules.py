@@ -48,9 +48,7 @@ def one_of(table: Table, path: KeyPath, a: str, b: str, *, needed: bool = True) 
 def _material(table: Table, path: KeyPath) -> Iterator[Problem]:
     base, kind = table.get("base"), table.get("kind")
     if isinstance(base, str):
-        fitting = [
-            name for name, preset in PRESET_DATA.items() if preset["kind"] == kind or kind not in KINDS
-        ]
+        fitting = [name for name, preset in PRESET_DATA.items() if preset["kind"] == kind or kind not in KINDS]
         if base not in PRESET_DATA:
             problem = f"no preset is called {base!r}"
             yield Problem((*path, "base"), problem, ", ".join(fitting), closest(base, PRESET_DATA))

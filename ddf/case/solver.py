@@ -28,7 +28,7 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
-    step_safety: float = Field(default=0.8, gt=0, le=1, description="Step as a fraction of the stable one.")
+    step_safety: float = Field(default=0.9, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
@@ -42,11 +42,9 @@ class Solver(Section):
         default=2.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=10.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+        default=4.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
-    contact_damping: float = Field(
-        default=0.33, ge=0, le=2, description="Contact damping, fraction of critical."
-    )
+    contact_damping: float = Field(default=0.33, ge=0, le=2, description="Contact damping, fraction of critical.")
     threads: int | None = Field(
         default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
     )

@@ -35,21 +35,15 @@ COMMON_KEYS = ("shape", "position_mm", "turn_deg")
 class Tool(Section):
     """The tool's shape and its place on the platform."""
 
-    shape: Literal[
-        "cube-corner-tetrahedron", "regular-tetrahedron", "hemisphere", "box", "cylinder", "file"
-    ] = Field(description="Which solid (inferred for the published tool: only its height is known).")
+    shape: Literal["cube-corner-tetrahedron", "regular-tetrahedron", "hemisphere", "box", "cylinder", "file"] = Field(
+        description="Which solid (inferred for the published tool: only its height is known)."
+    )
     height_mm: float | None = Field(
         default=None, gt=0, le=2000, description="Height [mm]: tetrahedra (left out: 82), box, cylinder."
     )
-    radius_mm: float | None = Field(
-        default=None, gt=0, le=2000, description="Radius [mm]: hemisphere, cylinder."
-    )
-    length_mm: float | None = Field(
-        default=None, gt=0, le=5000, description="Length along x before turning [mm]: box."
-    )
-    width_mm: float | None = Field(
-        default=None, gt=0, le=5000, description="Width along y before turning [mm]: box."
-    )
+    radius_mm: float | None = Field(default=None, gt=0, le=2000, description="Radius [mm]: hemisphere, cylinder.")
+    length_mm: float | None = Field(default=None, gt=0, le=5000, description="Length along x before turning [mm]: box.")
+    width_mm: float | None = Field(default=None, gt=0, le=5000, description="Width along y before turning [mm]: box.")
     fillet_mm: float = Field(
         default=5.0,
         ge=0,
@@ -59,9 +53,7 @@ class Tool(Section):
     file: str | None = Field(
         default=None, description="STEP or STL file, relative to the case file: shape 'file'. Made absolute."
     )
-    unit: Literal["mm", "m", "inch"] = Field(
-        default="mm", description="Unit of length in the file: shape 'file'."
-    )
+    unit: Literal["mm", "m", "inch"] = Field(default="mm", description="Unit of length in the file: shape 'file'.")
     position_mm: Point = Field(default=(0.0, 0.0), description="Tool's centre from the frame's centre [mm].")
     turn_deg: float = Field(default=0.0, ge=-360, le=360, description="Turn about the vertical [deg].")
 

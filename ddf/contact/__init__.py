@@ -1,0 +1,1 @@
+"""Contact of sheets with each other and with the tool."""

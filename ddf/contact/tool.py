@@ -110,8 +110,19 @@ def tool_forces(x, v, f, carry, dx, dy, tool, origin, spacing, law, motion, reac
                     w00 * v[2, i, j] + w10 * v[2, i + 1, j] + w01 * v[2, i, j + 1] + w11 * v[2, i + 1, j + 1] - speed,
                 )
                 fx, fy, fz, near = _point(
-                    p, u, tool, origin, spacing, offset, stiffness * area, damping * area, mass * area, mu, dt,
-                    anchors[i, j, q], out,
+                    p,
+                    u,
+                    tool,
+                    origin,
+                    spacing,
+                    offset,
+                    stiffness * area,
+                    damping * area,
+                    mass * area,
+                    mu,
+                    dt,
+                    anchors[i, j, q],
+                    out,
                 )
                 nearest = min(nearest, near)
                 if near >= 0.0:

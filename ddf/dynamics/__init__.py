@@ -1,0 +1,1 @@
+"""Time: the step, its stable length, the team of threads."""

@@ -48,8 +48,6 @@ from ddf.model import (
     TOOL_TANGENTIAL_SPRING,
     TOOL_WORK,
     TOOL_Z,
-    Model,
-    State,
     scalars,
     vectors,
 )
@@ -58,7 +56,7 @@ SCRATCH_ROWS = 72
 
 
 class Work(NamedTuple):
-    """Scratch memory: nothing in it outlives a step, but for `sleep` and `rest`, which are set before every call of `advance`."""
+    """Scratch memory. Nothing in it outlives a step but `sleep` and `rest`, set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
     buffers: np.ndarray  # forces on masters, one (3, N, M) a pair and slave block
@@ -197,7 +195,7 @@ def _collect(model, state, work, b):
 
 @njit(**FAST)
 def _kick_row(v, f, inverse_mass, mass, damping, dt):
-    """v <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick."""
+    """V <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick."""
     square = power = 0.0
     for j in range(v.shape[0]):
         square += mass[j] * v[j] * v[j]
@@ -208,7 +206,7 @@ def _kick_row(v, f, inverse_mass, mass, damping, dt):
 
 @njit(**FAST)
 def _drift_row(x, v, f, mass, dt):
-    """x <- x + dt v, one component of a row; returns sum m v^2 and sum f v."""
+    """X <- x + dt v, one component of a row; returns sum m v^2 and sum f v."""
     square = power = 0.0
     for j in range(v.shape[0]):
         square += mass[j] * v[j] * v[j]

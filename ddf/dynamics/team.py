@@ -88,9 +88,7 @@ class Team:
         if self._pool is None:
             function(0, 1, self.sync, *arguments)
             return
-        others = [
-            self._pool.submit(function, k, self.members, self.sync, *arguments) for k in range(1, self.members)
-        ]
+        others = [self._pool.submit(function, k, self.members, self.sync, *arguments) for k in range(1, self.members)]
         function(0, self.members, self.sync, *arguments)
         for other in others:
             other.result()

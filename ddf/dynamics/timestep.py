@@ -21,8 +21,8 @@ def ply_omega2(
 ) -> float:
     """Bound of omega^2 of a ply's explicit forces.
 
-    Shear and tension across the fibres 4 (N_s' + T)(1/a1^2 + 1/a2^2)/m, T [N/mm], bending 16 (D1/a1^4 + D2/a2^4)/m, contact 2 K/m with K the sum of the
-    contact stiffnesses [N/mm3] on its two faces.
+    Shear and tension across the fibres 4 (N_s' + T)(1/a1^2 + 1/a2^2)/m, T [N/mm]; bending
+    16 (D1/a1^4 + D2/a2^4)/m; contact 2 K/m with K the sum of the contact stiffnesses [N/mm3] on its two faces.
     """
     a1, a2 = spacing
     stretch = 4.0 * (shear + tension) * (1 / a1**2 + 1 / a2**2)

@@ -1,0 +1,1 @@
+"""Internal forces: each file one element, with its energy."""

@@ -128,9 +128,7 @@ def _row(x, bar1, bar2, triple1, triple2, i, k, w, out):
     normal, inv, s1, s2 = w[16:19], w[19, :m], w[20, :m], w[21, :m]
     p, q1, q2 = w[22:25], w[25, :m], w[26, :m]
     _normals(t1[0], t1[1], t1[2], t2[0], t2[1], t2[2], normal[0], normal[1], normal[2], inv)
-    _moments(
-        c1, c2, normal[0], normal[1], normal[2], inv, triple1[i], triple2[i], k[0], k[1], s1, s2, p[0], p[1], p[2]
-    )
+    _moments(c1, c2, normal[0], normal[1], normal[2], inv, triple1[i], triple2[i], k[0], k[1], s1, s2, p[0], p[1], p[2])
     for c in range(3):
         d, e = (c + 1) % 3, (c + 2) % 3
         _cross(t2[d], t2[e], p[e], p[d], q1)

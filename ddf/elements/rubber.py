@@ -47,7 +47,7 @@ def _metric(a1, a2, dx, dy, c11, c22, c12):
 
 @njit(inline="always")
 def _ln(c):
-    """ln c from the eighth root: ln c = 16 atanh((y - 1)/(y + 1)), y = c^(1/8)."""
+    """Ln c from the eighth root: ln c = 16 atanh((y - 1)/(y + 1)), y = c^(1/8)."""
     y = np.sqrt(np.sqrt(np.sqrt(c)))
     z = (y - 1.0) / (y + 1.0)
     w = z * z
@@ -56,7 +56,7 @@ def _ln(c):
 
 @njit(inline="always")
 def _exp(y):
-    """exp y = (exp y/32)^32, |y| < 10."""
+    """Exp y = (exp y/32)^32, |y| < 10."""
     t = y * (1.0 / 32.0)
     e = 1 + t * (1 + t * (1 / 2 + t * (1 / 6 + t * (1 / 24 + t * (1 / 120 + t * (1 / 720 + t / 5040))))))
     e = e * e

@@ -38,7 +38,7 @@ def _sines(t1x, t1y, t1z, t2x, t2y, t2z, r1, r2, s):
 
 @njit(**FAST)
 def _slopes(s, cell, table, slope):
-    """slope = A dW/ds from the table; beyond its end the last cubic goes on."""
+    """Slope = A dW/ds from the table; beyond its end the last cubic goes on."""
     last = table.shape[0] - 2
     step = 1.0 / table[table.shape[0] - 1, 0]  # the last row holds the width of an interval
     for j in range(s.shape[0]):
@@ -52,7 +52,7 @@ def _slopes(s, cell, table, slope):
 
 @njit(**FAST)
 def _pull(t1, t2, r1, r2, s, slope, plus, minus):
-    """plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of one component, G = -dU/dt."""
+    """Plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of one component, G = -dU/dt."""
     for j in range(s.shape[0]):
         e1 = t1[j] * r1[j]
         e2 = t2[j] * r2[j]

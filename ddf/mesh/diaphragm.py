@@ -64,9 +64,7 @@ def _symmetrised(lines: FloatArray) -> FloatArray:
     return lines
 
 
-def _graded_blocks(
-    half: float, low: float, high: float, element: float, largest: float, growth: float
-) -> list[Block]:
+def _graded_blocks(half: float, low: float, high: float, element: float, largest: float, growth: float) -> list[Block]:
     """Blocks from -half to half [mm] along one direction: capped, graded, uniform, graded, capped."""
     if not -half - 1e-9 <= low < high <= half + 1e-9:
         raise MeshError(
@@ -101,9 +99,7 @@ def _pinned(blocks: list[Block], half: float) -> list[Block]:
     return blocks
 
 
-def _grade(
-    length: float, element: float, largest: float, growth: float
-) -> tuple[tuple[int, float, float], ...]:
+def _grade(length: float, element: float, largest: float, growth: float) -> tuple[tuple[int, float, float], ...]:
     """Runs of cells (count, first size, ratio) that fill `length` [mm] outward from cells of `element` [mm].
 
     k graded cells a r, a r^2, ... a r^k, then p cells of a r^k, with the fewest cells for which some ratio

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, sqrt
+from math import sqrt
 from pathlib import Path
 from zipfile import BadZipFile
 
@@ -11,13 +11,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ddf.contact.field import OUTSIDE, sample
 from ddf.errors import MeshError
 from ddf.mesh.closest import nearest_triangles, pseudo_normals, signed_distance
 from ddf.mesh.triangles import TriangleMesh
 
 FloatArray = NDArray[np.float64]
 
-OUTSIDE_MM = 1.0e3
+OUTSIDE_MM = OUTSIDE
 """Distance given for points outside the grid (far from the tool)."""
 
 DEPTH_MM = 10.0
@@ -180,34 +181,6 @@ def _sweep(values, owner, spacing, si, sj):
             for k in range(nz - 2, -1, -1):
                 if owner[i, j, k] < 0:
                     _carry(values, i, j, k, i, j, k + 1, 0.0, 0.0, -spacing)
-
-
-@njit(cache=True)
-def sample(values, origin, spacing, x, y, z):
-    """Signed distance [mm] and unit gradient at one point, by trilinear interpolation: (d, gx, gy, gz).
-
-    `values` (nx, ny, nz, 4), `origin` (3,) and `spacing` [mm] of a DistanceField. Outside the grid the
-    answer is (OUTSIDE_MM, 0, 0, 1).
-    """
-    u, v, w = (x - origin[0]) / spacing, (y - origin[1]) / spacing, (z - origin[2]) / spacing
-    i, j, k = floor(u), floor(v), floor(w)
-    nx, ny, nz = values.shape[0], values.shape[1], values.shape[2]
-    if not (i >= 0 and j >= 0 and k >= 0 and i < nx - 1 and j < ny - 1 and k < nz - 1):
-        return OUTSIDE_MM, 0.0, 0.0, 1.0
-    u, v, w = u - i, v - j, w - k
-    d, gx, gy, gz = 0.0, 0.0, 0.0, 0.0
-    for a in range(2):
-        for b in range(2):
-            for c in range(2):
-                f = (u if a else 1.0 - u) * (v if b else 1.0 - v) * (w if c else 1.0 - w)
-                d += f * values[i + a, j + b, k + c, 0]
-                gx += f * values[i + a, j + b, k + c, 1]
-                gy += f * values[i + a, j + b, k + c, 2]
-                gz += f * values[i + a, j + b, k + c, 3]
-    length = sqrt(gx * gx + gy * gy + gz * gz)
-    if length < 1e-6:
-        return d, 0.0, 0.0, 1.0
-    return d, gx / length, gy / length, gz / length
 
 
 @njit(cache=True)

@@ -36,9 +36,7 @@ def block_lines(blocks: list[Block]) -> FloatArray:
     return np.concatenate([blocks[0].lines(), *(block.lines()[1:] for block in blocks[1:])])
 
 
-def mesh_grid(
-    u_blocks: list[Block], v_blocks: list[Block], axis_deg: float = 0.0, name: str = "grid"
-) -> FloatArray:
+def mesh_grid(u_blocks: list[Block], v_blocks: list[Block], axis_deg: float = 0.0, name: str = "grid") -> FloatArray:
     """Mesh a rectangle of transfinite blocks with gmsh; return node positions (3, n, m) [mm] in grid order.
 
     The first index runs along (cos t, sin t), the second along (-sin t, cos t), t = `axis_deg`; block ends
@@ -106,9 +104,7 @@ def _line_index(values: FloatArray, count: int, name: str) -> IntArray:
     return np.searchsorted(limits, values).astype(np.int64)
 
 
-def recover_order(
-    points: FloatArray, quads: IntArray, shape: tuple[int, int], name: str = "grid"
-) -> IntArray:
+def recover_order(points: FloatArray, quads: IntArray, shape: tuple[int, int], name: str = "grid") -> IntArray:
     """Node index at each grid place, (n, m), from coordinates on the grid axes (k, 2) and cells (q, 4).
 
     The order comes from the coordinates and is proved by the connectivity: every cell must join the four

@@ -135,9 +135,7 @@ def resample(loop: FloatArray, spacing: tuple[float, float], step_mm: float) -> 
     sides = np.roll(loop, -1, axis=0) - loop
     length = np.linalg.norm(sides * scale, axis=1)
     pieces = np.maximum(1, np.ceil(length / step_mm - 1e-9)).astype(np.int64)
-    parts = [
-        p + np.arange(k)[:, None] / k * side for p, side, k in zip(loop, sides, pieces.tolist(), strict=True)
-    ]
+    parts = [p + np.arange(k)[:, None] / k * side for p, side, k in zip(loop, sides, pieces.tolist(), strict=True)]
     direction = sides * scale / length[:, None]
     cosine = np.sum(direction * np.roll(direction, 1, axis=0), axis=1)
     starts = np.concatenate(([0], np.cumsum(pieces)[:-1]))

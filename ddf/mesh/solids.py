@@ -115,11 +115,7 @@ def _cylinder(gmsh: Any, size: Dimensions) -> None:
 
 def _edges_off_base(gmsh: Any, depth: float) -> list[int]:
     """Tags of the curves that do not lie in the plane z = -depth."""
-    return [
-        tag
-        for dim, tag in gmsh.model.getEntities(1)
-        if gmsh.model.getBoundingBox(dim, tag)[5] > -depth + 1e-3
-    ]
+    return [tag for dim, tag in gmsh.model.getEntities(1) if gmsh.model.getBoundingBox(dim, tag)[5] > -depth + 1e-3]
 
 
 SOLIDS: dict[str, Callable[[Any, Dimensions], None]] = {

@@ -109,10 +109,7 @@ def _mesh_surface(gmsh: Any, size: float, chord: float, what: str) -> TriangleMe
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     index = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
     index[tags.astype(np.int64)] = np.arange(tags.size)
-    parts = [
-        index[gmsh.model.mesh.getElementsByType(2, tag)[1].astype(np.int64)].reshape(-1, 3)
-        for tag in surfaces
-    ]
+    parts = [index[gmsh.model.mesh.getElementsByType(2, tag)[1].astype(np.int64)].reshape(-1, 3) for tag in surfaces]
     patch = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
     points, triangles = coordinates.reshape(-1, 3), np.concatenate(parts)
     mesh = compact(points, triangles)

@@ -22,9 +22,7 @@ class Bridging:
     area_percent: float  # [%] bridged share of the ply's area
 
 
-def find_bridging(
-    surface: PlySurface, wrinkle_cells: Mask | None = None, threshold_mm: float = 0.5
-) -> Bridging:
+def find_bridging(surface: PlySurface, wrinkle_cells: Mask | None = None, threshold_mm: float = 0.5) -> Bridging:
     """Gap of the mid-surface over its conforming place, and the share of the ply that bridges.
 
     A node bridges when its gap exceeds the threshold and it is not within one cell of a wrinkle cell

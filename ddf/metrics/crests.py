@@ -51,9 +51,7 @@ def select_crests(
         free = good[starts[k] : starts[k + 1]] & ~owned[i, j]
         for first, last in _runs(free, round(gap_mm / step_mm)):
             rows = starts[k] + np.arange(first, last + 1)
-            points = _crest_points(
-                sections, rows, free[first : last + 1], starts[k], starts[k + 1], x, threshold_mm
-            )
+            points = _crest_points(sections, rows, free[first : last + 1], starts[k], starts[k + 1], x, threshold_mm)
             length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
             if length < min_length_mm:
                 continue

@@ -172,9 +172,7 @@ def _feet(places: Array, h: Array, first: int, crest: int, last: int) -> tuple[i
 
 
 @njit(cache=True)
-def _half_point(
-    above: Array, points: Array, tangent: Array, crest: int, way: int, level: float
-) -> tuple[Array, float]:
+def _half_point(above: Array, points: Array, tangent: Array, crest: int, way: int, level: float) -> tuple[Array, float]:
     """Point in space where the flank first falls to `level`, and the arc to it across the crest."""
     arc = 0.0
     k = crest

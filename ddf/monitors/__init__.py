@@ -1,0 +1,1 @@
+"""Observers: energies, guards, audit."""

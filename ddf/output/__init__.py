@@ -1,0 +1,1 @@
+"""What a run leaves behind: folder, frames, tables, checkpoints, pictures, report."""

@@ -1,0 +1,95 @@
+"""The audit after a run: which assumptions of the model held, each with its limit and what it means."""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+import numpy as np
+
+from ddf.model import PLY, sheet_vectors
+from ddf.monitors.energy import Energies
+from ddf.monitors.stability import fibre_stretch
+from ddf.scene import Scene
+
+SAMPLES = 5
+"""Points along each side of a cell where penetration is measured."""
+
+
+class Check(TypedDict):
+    """One line of the audit."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    ok: bool
+    meaning: str
+
+
+def deepest_penetration(scene: Scene, time: float) -> float:
+    """Deepest point of the tool-side face of the tool's sheet in the tool or platform [mm], dense sample.
+
+    The face is the mid-surface (bilinear in each cell) less half a thickness along the tool's gradient.
+    """
+    if scene.tool_field is None:
+        return 0.0
+    x = sheet_vectors(scene.model, scene.state.x, scene.model.tool_sheet)
+    deepest = -np.inf
+    share = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    for a in share:
+        for b in share:
+            p = (
+                (1 - a) * (1 - b) * x[:, :-1, :-1]
+                + a * (1 - b) * x[:, 1:, :-1]
+                + (1 - a) * b * x[:, :-1, 1:]
+                + a * b * x[:, 1:, 1:]
+            )
+            d = scene.obstacle_distance(p.reshape(3, -1).T, time)
+            deepest = max(deepest, float(np.max(scene.model.tool_offset - d)))
+    return max(deepest, 0.0)
+
+
+def apex_gap(scene: Scene, time: float) -> float:
+    """Least distance between the tool's highest point and the tool-side face of its sheet [mm]."""
+    if scene.tool_mesh is None:
+        return 0.0
+    points = scene.tool_mesh.points
+    top = points[np.argmax(points[:, 2])] + [0.0, 0.0, scene.tool_z(time)]
+    x = sheet_vectors(scene.model, scene.state.x, scene.model.tool_sheet)
+    return float(np.sqrt(((x - top[:, None, None]) ** 2).sum(axis=0)).min() - scene.model.tool_offset)
+
+
+def fibre_strain_range(scene: Scene) -> tuple[float, float]:
+    """Least and largest fibre strain ln(lambda) of all plies."""
+    low, high = 0.0, 0.0
+    for k in scene.ply_sheets:
+        s, mesh = scene.model.sheets[k], scene.sheets[k].mesh
+        x = sheet_vectors(scene.model, scene.state.x, k)
+        assert s["kind"] == PLY
+        for strain in fibre_stretch(x, mesh.active, (float(s["a1"]), float(s["a2"]))):
+            low, high = min(low, float(strain.min())), max(high, float(strain.max()))
+    return low, high
+
+
+def audit(scene: Scene, energy: Energies, time: float, elements_across: float | None) -> list[Check]:
+    """All checks of a finished run. elements_across: least number of elements across a wrinkle, if any."""
+    low, high = fibre_strain_range(scene)
+    added = sum(s.added_mass for s in scene.sheets) / sum(s.true_mass for s in scene.sheets)
+    checks = [
+        _check("kinetic over internal energy", 100 * energy.kinetic_share(), 2.0, "%", "the sheets have come to rest"),
+        _check("energy balance error", abs(100 * energy.error_share), 1.0, "% of work", "no energy came from nowhere"),
+        _check("deepest penetration of the tool", deepest_penetration(scene, time), 0.2, "mm", "contact was stiff"),
+        _check("largest fibre strain", 100 * max(-low, high), 0.3, "%", "fibres are as good as inextensible"),
+        _check("added mass", 100 * added, 50.0, "% of all", "mass scaling of the plies is small"),
+    ]
+    if scene.tool_mesh is not None:
+        checks.append(_check("gap over the tool's apex", apex_gap(scene, time), 1.0, "mm", "the tool is covered"))
+    if elements_across is not None:
+        check = _check("elements across the narrowest wrinkle", elements_across, 6.0, "", "wrinkles are resolved")
+        check["ok"] = elements_across >= check["limit"]
+        checks.append(check)
+    return checks
+
+
+def _check(name: str, value: float, limit: float, unit: str, meaning: str) -> Check:
+    return Check(name=name, value=float(value), limit=limit, unit=unit, ok=bool(value <= limit), meaning=meaning)

@@ -1,0 +1,107 @@
+"""The folder of a run: made, refused or emptied, and written to file by file as a whole."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddf.errors import UsageError
+from ddf.output import atomic
+
+#: what ddf writes into a folder, as patterns from its top: all that --force removes
+KNOWN = (
+    "case.toml",
+    "case.resolved.toml",
+    "run.json",
+    "log.txt",
+    "history.csv",
+    "wrinkles.csv",
+    "metrics.json",
+    "checkpoint.npz",
+    "report.html",
+    "*.pvd",
+    "frames/*.vtu",
+    "profiles/*.csv",
+    "pictures/*.png",
+    *(f"{folder}{atomic.TEMPORARY_PREFIX}*" for folder in ("", "frames/", "profiles/", "pictures/")),
+)
+#: at least one of these is in any folder that a run was started in
+MARKS = ("run.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
+
+
+class RunFolder:
+    """A folder of results. Names are relative to it; `/` leads to its subfolders."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+
+    @classmethod
+    def create(cls, path: str | Path, force: bool = False, resume: bool = False) -> RunFolder:
+        """Make the folder, or take over one that is there.
+
+        A folder that is not empty is refused unless `resume` (kept as it is) or `force` (what ddf wrote is
+        removed, other files stay). Raises UsageError for the refusal, DdfError if it cannot be made.
+        """
+        folder = cls(path)
+        if folder.path.exists() and not folder.path.is_dir():
+            raise UsageError(f"{folder.path} is a file, not a folder", "choose another folder with -o")
+        with atomic.write_errors(folder.path):
+            folder.path.mkdir(parents=True, exist_ok=True)
+            filled = any(folder.path.iterdir())
+        if filled and force and not resume:
+            folder.empty()
+        elif filled and not resume:
+            raise UsageError(
+                f"{folder.path} is not empty",
+                "--resume goes on with the run in it, --force replaces it; or choose another folder with -o",
+            )
+        return folder
+
+    def __truediv__(self, name: str) -> Path:
+        return self.path / name
+
+    def empty(self) -> None:
+        """Remove what ddf wrote, and its subfolders if nothing else is in them; nothing where no run was."""
+        if not any((self.path / name).exists() for name in MARKS):
+            return
+        with atomic.write_errors(self.path):
+            for pattern in KNOWN:
+                for file in self.path.glob(pattern):
+                    if file.is_file() or file.is_symlink():
+                        file.unlink()
+            for name in ("frames", "profiles", "pictures"):
+                inner = self.path / name
+                if inner.is_dir() and not inner.is_symlink() and not any(inner.iterdir()):
+                    inner.rmdir()
+
+    def write_bytes(self, name: str, data: bytes) -> Path:
+        """Write a file as a whole and return its path; raises DdfError (disk full, read-only)."""
+        atomic.write_bytes(self.path / name, data)
+        return self.path / name
+
+    def write_text(self, name: str, text: str) -> Path:
+        """Write UTF-8 text as a whole and return its path; raises DdfError."""
+        return self.write_bytes(name, text.encode("utf-8"))
+
+    def write_json(self, name: str, value: Any) -> Path:
+        """Write JSON as a whole and return its path; NaN and infinity become null. Raises DdfError."""
+        return self.write_text(name, json.dumps(plain(value), indent=2, ensure_ascii=False) + "\n")
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON has it: numpy to Python, tuples to lists, paths to text, not finite to None."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | set):
+        return [plain(item) for item in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if value is None or isinstance(value, bool | int | str) else str(value)

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Sets up if need be, then checks style, types and layers, and runs the tests (coarse scenes).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+bash scripts/setup.sh
+export PATH="$PWD/.venv/bin:$PATH"
+ruff format --check ddf tests scripts
+ruff check ddf tests scripts
+mypy
+lint-imports
+python -m pytest "$@"

@@ -1,0 +1,185 @@
+"""Contact between sheets: gradient of its spring energy, momenta, friction."""
+
+import numpy as np
+import pytest
+import touching as t
+
+
+def _gradient(energy, x, step=1e-5):
+    g = np.zeros_like(x)
+    for k in np.ndindex(x.shape):
+        y = x.copy()
+        y[k] = x[k] + step
+        up = energy(y)
+        y[k] = x[k] - step
+        g[k] = (up - energy(y)) / (2.0 * step)
+    return g
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_force_is_the_gradient_of_the_spring_energy(sign):
+    xs, xm = t.curved_scene(np.random.default_rng(0))
+    if sign < 0:
+        xs[2] -= 1.9
+    start = t.Layers(xs, xm, 2.5, t.make_pair(sign=sign)).settle(xs, xm, 30)
+
+    def energy(a, b):
+        scene = t.Layers(xs, xm, 2.5, start.pair)
+        scene.place, scene.anchor = start.place.copy(), start.anchor.copy()
+        return scene.settle(a, b, 6).out[0]
+
+    fs, fm = start.forces(xs, xm)
+    scale = np.abs(fs).max()
+    assert (np.abs(fs[2]) > 0).sum() >= 8
+    assert np.abs(fs + _gradient(lambda y: energy(y, xm), xs)).max() < 1e-6 * scale
+    assert np.abs(fm + _gradient(lambda y: energy(xs, y), xm)).max() < 1e-6 * scale
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_momenta_are_conserved_whatever_happens(seed):
+    rng = np.random.default_rng(seed)
+    xs, xm = t.curved_scene(rng, 4.0)
+    scene = t.Layers(xs, xm, 2.5, t.make_pair(friction=0.5, damping=1e-4))
+    scene.settle(xs, xm, 4)
+    scene.place[:2] += rng.normal(size=scene.place[:2].shape) * 0.15  # far from converged
+    scene.anchor += rng.normal(size=scene.anchor.shape) * 0.02
+    scene.place[2] += rng.normal(size=scene.place[2].shape) * 1e-3
+    xs = xs + rng.normal(size=xs.shape) * 0.1
+    fs, fm = scene.forces(xs, xm, dt=1e-5)
+    assert (np.abs(fs).max(axis=0) > 0).sum() > 3
+    assert scene.out[2] > 0.0
+    force, moment, scale, couple = t.resultants((xs, fs), (xm, fm))
+    assert np.abs(force).max() < 1e-12 * scale
+    assert np.abs(moment).max() < 1e-12 * couple
+
+
+def test_turned_scene_has_turned_forces():
+    rng = np.random.default_rng(3)
+    xs, xm = t.curved_scene(rng)
+    q = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    q *= np.sign(np.linalg.det(q))
+    ys, ym = np.tensordot(q, xs, 1), np.tensordot(q, xm, 1)
+    plain = t.Layers(xs, xm, 2.5, t.make_pair(friction=0.4, damping=1e-4))
+    turned = t.Layers(xs, xm, 2.5, plain.pair)
+    plain.settle(xs, xm)
+    turned.settle(ys, ym)
+    move = rng.normal(size=xs.shape) * 0.01
+    a, b = plain.forces(xs + move, xm, 1e-5)
+    c, d = turned.forces(ys + np.tensordot(q, move, 1), ym, 1e-5)
+    assert np.abs(np.tensordot(q, a, 1) - c).max() < 1e-10 * np.abs(a).max()
+    assert np.abs(np.tensordot(q, b, 1) - d).max() < 1e-10 * np.abs(a).max()
+
+
+def test_row_blocks_of_the_slave_do_not_change_forces():
+    xs, xm = t.curved_scene(np.random.default_rng(5))
+    one, two = (t.Layers(xs, xm, 2.5, t.make_pair(friction=0.4)).settle(xs, xm) for _ in range(2))
+    move = np.random.default_rng(6).normal(size=xs.shape) * 0.01
+    a, b = one.forces(xs + move, xm), two.forces(xs + move, xm, seam=2)
+    assert np.array_equal(a[0], b[0])
+    assert np.abs(a[1] - b[1]).max() < 1e-14 * np.abs(a[1]).max()
+
+
+def test_open_gaps_have_no_force_and_reset_the_anchor():
+    xs, xm = t.curved_scene(np.random.default_rng(7))
+    xs[2] += 1.0
+    scene = t.Layers(xs, xm, 2.5, t.make_pair(friction=0.4)).settle(xs, xm, 3)
+    fs, fm = scene.forces(xs, xm)
+    assert not fs.any()
+    assert not fm.any()
+    assert np.array_equal(scene.anchor, scene.place[:2])
+
+
+def _flat_master(count=40, spacing=20.0):
+    u, v = np.meshgrid(np.arange(count) * spacing, np.arange(5) * spacing, indexing="ij")
+    return np.array([u, v, 0.0 * u])
+
+
+def _nodes(at=40.0, height=0.98):
+    u, v = np.meshgrid(at + np.arange(4) * 3.0, 35.0 + np.arange(3) * 3.0, indexing="ij")
+    return np.array([u, v, np.full_like(u, height)])
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("damping", [0.0, 2e-5])
+def test_friction_stays_in_its_cone_and_never_gives_energy(seed, damping):
+    rng = np.random.default_rng(seed)
+    xm, x = _flat_master(), _nodes()
+    mu, mass, dt = 0.45, 1e-9, 1e-5
+    scene = t.Layers(x, xm, 20.0, t.make_pair(friction=mu, damping=damping, mass=mass)).settle(x, xm, 3)
+    speed = np.zeros_like(x)
+    slid = stuck = 0
+    for _ in range(400):
+        speed = 0.9 * speed + rng.normal(size=x.shape) * np.array([300.0, 300.0, 60.0])[:, None, None]
+        speed[2] -= 2.0e3 * (x[2] - 0.98)  # stay about where it touches
+        x = x + dt * speed
+        fs, _ = scene.forces(x, xm, dt)
+        tangential, normal = np.hypot(fs[0], fs[1]), fs[2]
+        assert (normal >= 0.0).all()
+        assert (tangential <= mu * normal * (1.0 + 1e-12)).all()
+        slid += (tangential > mu * normal * (1.0 - 1e-9))[normal > 0].sum()
+        stuck += (tangential < 0.99 * mu * normal).sum()
+        assert scene.out[2] >= -1e-15
+        assert scene.out[3] >= -1e-15
+    assert slid > 50
+    assert stuck > 50
+
+
+def test_sliding_dissipates_the_friction_forces_work():
+    xm, x = _flat_master(), _nodes()
+    scene = t.Layers(x, xm, 20.0, t.make_pair(friction=0.3)).settle(x, xm, 3)
+    lost = []
+    for _ in range(400):
+        x = x + np.array([1e-3, 0.0, 0.0])[:, None, None]
+        fs, _ = scene.forces(x, xm)
+        lost.append(scene.out[2])
+    normal = 2.0 * 0.02 * 12  # K A gap, 12 nodes
+    assert -fs[0].sum() == pytest.approx(0.3 * normal, rel=1e-9)
+    assert np.sum(lost[200:]) == pytest.approx(0.3 * normal * 0.2, rel=1e-6)
+
+
+@pytest.mark.xfail(strict=True, reason="the ledger takes 1/2 k (change of spring)^2 a step for friction")
+def test_elastic_sticking_dissipates_nothing():
+    xm, x = _flat_master(), _nodes()
+    scene = t.Layers(x, xm, 20.0, t.make_pair(friction=5.0)).settle(x, xm, 3)
+    lost = stored = 0.0
+    for k in range(1, 401):  # ten cycles of forty steps, back to the start
+        y = x.copy()
+        y[0] += 0.01 * np.sin(2.0 * np.pi * k / 40)
+        scene.forces(y, xm)
+        lost, stored = lost + scene.out[2], max(stored, scene.out[1])
+    assert stored == pytest.approx(0.5 * 2.0 * 1e-4 * 12, rel=1e-6)
+    assert abs(lost) < 1e-3 * stored
+
+
+def _slide(degrees, mu, steps=2000):
+    """Positions along a rigid incline of loose nodes under gravity, from rest, every step [mm]."""
+    a, g, mass = np.deg2rad(degrees), 9810.0, 1e-5
+    gravity = g * np.array([np.sin(a), 0.0, -np.cos(a)])  # the scene is turned, not the plane
+    x, xm = _nodes(height=1.0 - mass * g * np.cos(a) / 2.0), _flat_master()
+    dt = 0.2 * np.sqrt(mass / 2.0) / 2.0
+    scene = t.Layers(x, xm, 20.0, t.make_pair(friction=mu, damping=4e-3, mass=mass)).settle(x, xm, 3)
+    v, path = np.zeros_like(x), []
+    for _ in range(steps):
+        fs, _ = scene.forces(x, xm, dt)
+        v += dt * (fs / mass + gravity.reshape(3, 1, 1))
+        x = x + dt * v
+        path.append(x[0].mean() - _nodes()[0].mean())
+    return dt, np.array(path), v
+
+
+@pytest.mark.parametrize(("degrees", "mu"), [(30.0, 0.2), (30.0, 0.0), (40.0, 0.52)])
+def test_block_slides_down_an_incline(degrees, mu):
+    dt, path, v = _slide(degrees, mu)
+    a = np.deg2rad(degrees)
+    acceleration = 9810.0 * (np.sin(a) - mu * np.cos(a))
+    half = path.size // 2
+    measured = (path[-1] - path[half] - (path[half] - path[0])) / (half * dt) ** 2
+    assert measured == pytest.approx(acceleration, rel=5e-3)
+    assert np.abs(v[1:]).max() < 1e-3 * v[0].max()
+
+
+def test_block_sticks_under_enough_friction():
+    _, path, v = _slide(20.0, 0.8)  # enough for the first swing, twice as far as the rest
+    elastic = 1e-5 * 9810.0 * np.sin(np.deg2rad(20.0)) / 2.0
+    assert path[-1] == pytest.approx(elastic, rel=0.01)
+    assert np.abs(v).max() < 0.1

@@ -1,0 +1,142 @@
+"""Contact with the rigid tool and its platform."""
+
+import numpy as np
+import pytest
+import touching as t
+
+DX, DY = [1.5, 2.0, 2.5, 1.7], [2.0, 1.4, 2.2]
+
+
+def _sheet(rng, height):
+    lines = [np.concatenate([[0.0], np.cumsum(d)]) - 3.0 for d in (DX, DY)]
+    u, v = np.meshgrid(*lines, indexing="ij")
+    return np.array([u, v, np.full_like(u, height)]) + rng.normal(size=(3, *u.shape)) * 0.1
+
+
+def _gradient(energy, x, step=1e-4):
+    g = np.zeros_like(x)
+    for k in np.ndindex(x.shape):
+        y = x.copy()
+        y[k] = x[k] + step
+        up = energy(y)
+        y[k] = x[k] - step
+        g[k] = (up - energy(y)) / (2.0 * step)
+    return g
+
+
+def _sphere(points):
+    r = points - np.array([0.0, 0.0, -15.0]).reshape(3, 1, 1, 1)
+    size = np.sqrt((r * r).sum(axis=0)) + 1e-12
+    return size - 20.0, r / size
+
+
+def test_force_is_the_gradient_of_the_penalty_energy_on_a_plane():
+    distance, normal = t.inclined_plane(25.0)
+    tool = t.Tool(distance, (DX, DY))
+    x = _sheet(np.random.default_rng(0), 0.0)
+    z = -6.0
+    x[0] -= 12.0  # high above the platform: only the plane is met
+    x[2] += 0.3 - np.tan(np.deg2rad(25.0)) * x[0] + z
+    f = tool.forces(x, z=z, seam=2)
+    assert (np.abs(f[2]) > 0).all()
+    expected = -_gradient(lambda y: (tool.forces(y, z=z), tool.out[0])[1], x)
+    away = tool.forces(x, z=z)
+    # the field is in single precision: relative 1e-5
+    assert np.abs(away - expected).max() < 1e-5 * np.abs(expected).max()
+    assert np.allclose(np.cross(f.sum(axis=(1, 2)), normal), 0.0, atol=1e-5 * np.abs(f).sum())
+
+
+def test_force_is_the_gradient_on_the_platform_and_in_the_corner():
+    distance, _ = t.inclined_plane(60.0)
+    tool = t.Tool(distance, (DX, DY))
+    x = _sheet(np.random.default_rng(1), 0.3)
+    x[0] += 2.5
+    f = tool.forces(x)
+    energy = tool.out[0]
+    assert f[0].sum() > 0.1 * f[2].sum()  # the plane pushes as well
+    assert energy > 0.0
+    expected = -_gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
+    assert np.abs(f - expected).max() < 1e-5 * np.abs(expected).max()
+
+
+def test_force_on_a_sphere_is_nearly_the_gradient():
+    tool = t.Tool(_sphere, (DX, DY))
+    x = _sheet(np.random.default_rng(2), 5.3)
+    f = tool.forces(x, z=-0.0)
+    expected = -_gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
+    assert np.abs(f - expected).max() < 0.05 * np.abs(expected).max()  # h^2 k of the 1 mm grid
+
+
+def test_row_blocks_do_not_change_a_force():
+    rng = np.random.default_rng(3)
+    x, v = _sheet(rng, 0.2), rng.normal(size=(3, 5, 4)) * 100.0
+    one, two = (t.Tool(_sphere, (DX, DY), damping=1e-5, friction=0.3) for _ in range(2))
+    a, b = one.forces(x, v, z=-5.0), two.forces(x, v, z=-5.0, seam=2)
+    assert np.abs(a).max() > 0.0
+    assert np.abs(a - b).max() < 1e-14 * np.abs(a).max()
+    assert one.out == pytest.approx(two.out, rel=1e-12)
+
+
+def test_work_is_force_times_the_tools_way():
+    x = _sheet(np.random.default_rng(4), 5.2)
+    tool = t.Tool(_sphere, (DX, DY))
+    f = tool.forces(x, speed=800.0, dt=1e-5)
+    assert tool.work == pytest.approx(f[2].sum() * 800.0 * 1e-5, rel=1e-12)
+
+
+def test_friction_stays_in_its_cone_and_never_gives_energy():
+    rng = np.random.default_rng(5)
+    distance, normal = t.inclined_plane(0.0)
+    x, dt = _sheet(rng, 0.7) * 1.0, 1e-5
+    x[2] = 0.7
+    tool = t.Tool(distance, ([3.0], [3.0]), friction=0.3, damping=1e-4)
+    x = x[:, :2, :2].copy()
+    v = np.zeros_like(x)
+    slid = 0
+    for _ in range(600):
+        v = 0.9 * v + rng.normal(size=x.shape) * np.array([200.0, 200.0, 30.0])[:, None, None]
+        v[2] -= 2e3 * (x[2] - 0.7)
+        x = x + dt * v
+        f = tool.forces(x, v, dt=dt).sum(axis=(1, 2))
+        assert f[2] >= 0.0
+        assert np.hypot(f[0], f[1]) <= 0.3 * f[2] * (1.0 + 1e-9) + 1e-15
+        slid += np.hypot(f[0], f[1]) > 0.29 * f[2]
+        assert tool.out[2] >= -1e-12
+        assert tool.out[3] >= -1e-15
+    assert slid > 20
+
+
+def _slide(degrees, mu, steps=3000):
+    distance, normal = t.inclined_plane(degrees)
+    mass, g, dt = 1e-5, 9810.0, 1e-4  # a block of 1 mm2 and its weight
+    tool = t.Tool(distance, ([2.0], [2.0]), friction=mu, damping=5e-3, mass=mass, stiffness=10.0)
+    u, v = np.meshgrid([-20.0, -18.0], [-1.0, 1.0], indexing="ij")
+    down = np.array([normal[2], 0.0, -normal[0]])
+    sink = 0.75 - mass * g * normal[2] / 10.0
+    x = u * down.reshape(3, 1, 1) + sink * normal.reshape(3, 1, 1)
+    x[1] = v
+    z = -100.0
+    x[2] += z
+    speed, path, start = np.zeros_like(x), [], x.mean(axis=(1, 2))
+    while len(path) < steps and x[0].mean() < -3.0:
+        f = tool.forces(x, speed, z=z, dt=dt)
+        speed += dt * (f / mass - np.array([0.0, 0.0, g]).reshape(3, 1, 1))
+        x = x + dt * speed
+        path.append((x.mean(axis=(1, 2)) - start) @ down)
+    return dt, np.array(path), speed, normal
+
+
+@pytest.mark.parametrize(("degrees", "mu"), [(35.0, 0.3), (35.0, 0.0)])
+def test_block_slides_down_the_tool(degrees, mu):
+    dt, path, _, _ = _slide(degrees, mu)
+    a, half = np.deg2rad(degrees), path.size // 2
+    measured = (path[2 * half - 1] - path[half] - (path[half] - path[1])) / (half * (half - 1) * dt**2)
+    assert path.size > 100
+    assert measured == pytest.approx(9810.0 * (np.sin(a) - mu * np.cos(a)), rel=0.02)
+
+
+def test_block_sticks_on_the_tool():
+    _, path, speed, _ = _slide(20.0, 0.5)
+    assert np.abs(path).max() < 0.05
+    assert abs(path[-1] - path[-500]) < 1e-6
+    assert np.abs(speed).max() < 0.01

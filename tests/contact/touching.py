@@ -1,0 +1,120 @@
+"""Small contact scenes and calls of the contact kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddf.contact.layers import UNKNOWN, layer_forces
+from ddf.contact.patch import patch_centres
+from ddf.contact.tool import FREE, tool_forces
+from ddf.model import PAIR
+
+
+def make_pair(**values):
+    pair = np.zeros(1, PAIR)
+    defaults = {"sign": 1.0, "offset": 1.0, "stiffness": 2.0, "damping": 0.0, "friction": 0.0, "mass": 1e-9}
+    for key, value in (defaults | values).items():
+        pair[key] = value
+    return pair[0]
+
+
+class Layers:
+    """Slave nodes on a master sheet; place, anchors and last gaps are kept between calls."""
+
+    def __init__(self, xs, xm, spacing, pair, area=1.0):
+        self.pair = pair
+        self.shape, self.master = xs.shape[1:], xm.shape[1:]
+        self.area = np.full(self.shape, area)
+        self.cell = np.ones(self.master)
+        self.centre = patch_centres(np.ones(self.master, bool))
+        origin = xm[:2, 0, 0].reshape(2, 1, 1)
+        self.place = np.concatenate([(xs[:2] - origin) / spacing, np.full((1, *self.shape), UNKNOWN)])
+        self.anchor = self.place[:2].copy()
+        self.out = np.zeros(4)
+
+    def settle(self, xs, xm, rounds=12):
+        """Converge the projection; springs are unstretched there, and nodes at rest."""
+        for _ in range(rounds):
+            self.forces(xs, xm)
+            self.anchor = self.place[:2].copy()
+        return self
+
+    def forces(self, xs, xm, dt=1e-6, seam=None):
+        """Forces on slave and master; `out` has the energies of this call."""
+        fs, fm = np.zeros_like(xs), np.zeros_like(xm)
+        self.out = np.zeros(4)
+        n = self.shape[0]
+        for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
+            buffer, span = np.zeros_like(xm), np.zeros((self.master[0], 2), np.int64)
+            rest = np.zeros(self.shape, np.int8)
+            layer_forces(
+                xs, fs, self.area, xm, self.cell, self.centre, self.place, self.anchor, rest, buffer, span,
+                self.pair, 1e6, dt, low, high, self.out,
+            )  # fmt: skip
+            for i in range(self.master[0]):
+                outside = np.ones(self.master[1], bool)
+                outside[span[i, 0] : span[i, 1]] = False
+                assert not buffer[:, i, outside].any(), "forces beyond the noted columns"
+            fm += buffer
+        return fs, fm
+
+
+def curved_scene(rng, noise=1.0):
+    """A slave patch pressed some hundredths of a millimetre into a curved master; spacing 2.5."""
+    u, v = np.meshgrid(np.arange(6) * 2.5, np.arange(7) * 2.5, indexing="ij")
+    xm = np.array([u, v, 0.01 * u**2]) + rng.normal(size=(3, 6, 7)) * 0.05 * noise
+    u, v = np.meshgrid(3 + np.arange(5) * 1.3, 3 + np.arange(5) * 1.7, indexing="ij")
+    xs = np.array([u, v, 0.01 * u**2 + 0.95]) + rng.normal(size=(3, 5, 5)) * 0.02 * noise
+    return xs, xm
+
+
+def resultants(*pairs):
+    """Force and moment of (x, f) pairs, and their scales."""
+    force, moment, scale, lever = np.zeros(3), np.zeros(3), 0.0, 0.0
+    for x, f in pairs:
+        x, f = x.reshape(3, -1).T, f.reshape(3, -1).T
+        force, moment = force + f.sum(axis=0), moment + np.cross(x, f).sum(axis=0)
+        scale, lever = scale + np.abs(f).sum(), max(lever, np.abs(x).max())
+    return force, moment, scale, scale * lever
+
+
+class Tool:
+    """A sheet of cells over a tool that is given by its distance function on a grid."""
+
+    def __init__(self, distance, cells, *, stiffness=10.0, damping=0.0, mass=1.65e-9, friction=0.0, size=60.0):
+        self.spacing, self.origin = 1.0, np.array([-0.5 * size, -0.5 * size, -0.5 * size])
+        axis = self.origin[0] + np.arange(int(size) + 1) * self.spacing
+        points = np.array(np.meshgrid(axis, axis, axis, indexing="ij"))
+        d, gradient = distance(points)
+        self.values = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32))
+        self.law = (0.75, stiffness, damping, mass, friction)
+        self.dx, self.dy = (np.asarray(a, dtype=float) for a in cells)
+        self.anchors = np.full((self.dx.size, self.dy.size, 4, 3), FREE)
+        self.out, self.work = np.zeros(4), 0.0
+
+    def forces(self, x, v=None, *, z=0.0, speed=0.0, dt=1e-6, seam=None):
+        n, m = x.shape[1:]
+        f = np.zeros_like(x)
+        v = np.zeros_like(x) if v is None else v
+        self.out, self.work = np.zeros(4), 0.0
+        sleep = np.zeros((n - 1, m - 1), np.int16)
+        for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
+            carry = np.zeros((3, m + 2))
+            self.work += tool_forces(
+                x, v, f, carry, self.dx, self.dy, self.values, self.origin, self.spacing, self.law, (z, speed),
+                1e6, dt, self.anchors, sleep, low, high, self.out,
+            )  # fmt: skip
+            if high < n:
+                f[:, high] += carry[:, :m]
+        return f
+
+
+def inclined_plane(degrees):
+    """Distance from a plane through the origin that falls towards +x."""
+    t = np.deg2rad(degrees)
+    normal = np.array([np.sin(t), 0.0, np.cos(t)])
+
+    def distance(points):
+        return np.tensordot(normal, points, 1), np.broadcast_to(normal.reshape(3, 1, 1, 1), points.shape)
+
+    return distance, normal

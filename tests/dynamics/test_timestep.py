@@ -1,0 +1,35 @@
+"""Stable steps: the bounds hold for the forces' own stiffness."""
+
+import numpy as np
+import pytest
+
+from ddf.dynamics.timestep import contact_damping, damped_limit, diaphragm_omega2, ply_omega2
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.1, 0.5, 1.0])
+def test_damped_limit_is_the_limit_of_the_oscillator(ratio):
+    omega = 1234.0
+
+    def growth(dt):
+        # v' = v - dt (omega^2 x + 2 z omega v); x' = x + dt v'
+        a = np.array([[1.0 - 2 * ratio * omega * dt, -dt * omega**2]])
+        step = np.vstack([a, [dt * a[0, 0], 1.0 + dt * a[0, 1]]])
+        scale = np.diag([1.0, omega])
+        return np.abs(np.linalg.eigvals(scale @ step @ np.linalg.inv(scale))).max()
+
+    limit = damped_limit(omega, ratio)
+    assert growth(0.999 * limit) <= 1.0 + 1e-9
+    assert growth(1.001 * limit) > 1.0
+
+
+def test_bounds_sum_their_parts():
+    bare = ply_omega2(0.5, (0.3, 0.2), 1.0, (2.0, 1.0), 0.0, 1e-9)
+    assert bare == pytest.approx((4 * 1.5 * 1.25 + 16 * (0.3 / 16 + 0.2)) / 1e-9)
+    assert ply_omega2(0.5, (0.3, 0.2), 1.0, (2.0, 1.0), 3.0, 1e-9) - bare == pytest.approx(6e9)
+    skin = diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 0.0, 0.0)
+    assert diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 2.0, 10.0) - skin == pytest.approx(14.0 / 1.65e-9)
+
+
+def test_contact_damping_is_a_fraction_of_critical():
+    assert contact_damping(0.5, 2.0, 2e-9, 2e-9) == pytest.approx(np.sqrt(2.0 * 1e-9))
+    assert contact_damping(0.5, 2.0, 2e-9, np.inf) == pytest.approx(np.sqrt(2.0 * 2e-9))
