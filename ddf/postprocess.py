@@ -14,7 +14,7 @@ from ddf.monitors.energy import Energies, energies
 from ddf.output.checkpoint import load_checkpoint
 from ddf.output.folder import RunFolder
 from ddf.output.results import open_run
-from ddf.output.snapshot import ply_surface
+from ddf.output.snapshot import ply_surface, take_snapshot
 from ddf.output.tables import write_metrics, write_profiles, write_wrinkles
 from ddf.scene import Scene
 
@@ -47,19 +47,61 @@ def finish_folder(
     write_metrics(out, tables, audit=checks)
     if scene.case.output.pictures:
         try:
-            from ddf.output.plots import draw_pictures
-
-            draw_pictures(out, scene, surfaces, wrinkles)
+            draw_pictures(scene, out, surfaces, wrinkles)
         except (ImportError, OSError, RuntimeError, ValueError) as error:
             notes.append(f"pictures are missing: {type(error).__name__}: {error}")
     return checks, tables
 
 
-def write_report(out: RunFolder) -> Path:
-    """Write report.html from what the folder holds and return its path."""
-    from ddf.output.report import report_html
+def draw_pictures(
+    scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrinkles: list[WrinkleResult]
+) -> None:
+    """Draw the pictures of the scene's present state, and the energies from history.csv."""
+    from ddf.output.charts import draw_energies
+    from ddf.output.figures import save_picture
+    from ddf.output.plots import draw_distance, draw_formed, draw_outline, draw_shear
 
-    return out.write_text("report.html", report_html(open_run(out.path)))
+    snapshot = take_snapshot(scene, scene.state)
+    by_name = {surface.name: surface for surface in surfaces}
+    for sheet in snapshot.sheets:
+        if sheet.kind == "ply" or sheet.name == "top-diaphragm":
+            picture = draw_formed(sheet, by_name.get(sheet.name))
+            save_picture(out, f"formed-{sheet.name}", picture)
+    for surface, found in zip(surfaces, wrinkles, strict=True):
+        save_picture(out, f"shear-{surface.name}", draw_shear(surface))
+        save_picture(out, f"outline-{surface.name}", draw_outline(surface, found, scene.tool_mesh))
+        if scene.tool_mesh is not None:
+            save_picture(out, f"distance-{surface.name}", draw_distance(surface))
+    save_picture(out, "energies", draw_energies(open_run(out.path).history()))
+
+
+def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
+    """Write report.html from what the folder holds (run.json, metrics.json, pictures); returns its path."""
+    from ddf.output.report import Report, write_report
+
+    run = open_run(out.path)
+    info = run.info
+    case = scene.case
+    tool = "no tool" if case.tool is None else f"{case.tool.shape}, fillet {case.tool.fillet_mm:g} mm"
+    stack = ", ".join(f"{ply.name} at {ply.orientation_deg:g} deg ({ply.element_mm:g} mm)" for ply in case.plies)
+    history = run.history()
+    last = {name: values[-1] for name, values in history.items() if name.endswith(("_mJ", "_percent"))}
+    summary = f"{stack} between two {case.diaphragms.thickness_mm:g} mm diaphragms; {tool}."
+    key_numbers = {
+        "process time": f"{info['process_time_s']:.4g} s",
+        "steps": f"{info['step']} of {info['step_s']:.3g} s",
+        "wall time of the steps": f"{info['wall_s'].get('steps', 0.0):.0f} s on {info['threads']} threads",
+        "added mass": ", ".join(
+            f"{name} {sheet['added_mass_g']:.0f} g" for name, sheet in info["mesh"]["sheets"].items()
+            if sheet["added_mass_g"] > 0
+        ) or "none",
+    }  # fmt: skip
+    report = Report(
+        title=case.title or out.path.name, summary=summary, key_numbers=key_numbers,
+        plies=run.metrics["plies"], audit=info["audit"], energies=last, settings=run.resolved_text,
+        versions={"ddf": info["ddf"], "Python": info["python"], **info["packages"]}, notes=notes,
+    )  # fmt: skip
+    return write_report(out, report)
 
 
 def rebuild_report(path: Path) -> Path:
@@ -75,6 +117,6 @@ def rebuild_report(path: Path) -> Path:
         raise DdfError(f"{path} holds an unfinished run, at {time:.5f} s", "finish it with ddf run --resume")
     notes: list[str] = []
     finish_folder(scene, out, energies(scene.model, scene.state), time, notes)
-    return write_report(out)
+    return report_of(scene, out, notes)
 
 

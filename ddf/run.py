@@ -28,7 +28,7 @@ from ddf.output.folder import RunFolder
 from ddf.output.snapshot import take_snapshot
 from ddf.output.tables import HistoryWriter
 from ddf.output.vtu import FrameWriter
-from ddf.postprocess import finish_folder, write_report
+from ddf.postprocess import finish_folder, report_of
 from ddf.provenance import provenance
 from ddf.scene import Scene
 from ddf.simulate import Simulation
@@ -150,7 +150,7 @@ def run_case(
             result.checks, result.plies = finish_folder(scene, out, runner.energy, runner.sim.time, result.notes)
     runner.write_info(reason, "", result.checks)
     if reason == "finished":
-        write_report(out)
+        report_of(scene, out, result.notes)
     return result
 
 

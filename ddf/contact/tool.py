@@ -65,15 +65,15 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out)
     limit = mu * normal
     share = coulomb(length(tx, ty, tz), limit)
     tx, ty, tz = tx * share, ty * share, tz * share
-    before = length(sx - dt * vx, sy - dt * vy, sz - dt * vz)
     stretch = length(sx, sy, sz)
     keep = 1.0
     if share < 1.0:
         keep = min(1.0, limit / max(k * stretch, 1e-30))
         anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
-    stored = 0.5 * k * keep * keep * stretch * stretch
-    out[1] += stored
-    out[2] += 0.5 * k * before * before - stored - dt * (tx * vx + ty * vy + tz * vz)
+    out[1] += 0.5 * k * (keep * stretch) ** 2
+    held = k * keep
+    viscous = (tx + held * sx) * vx + (ty + held * sy) * vy + (tz + held * sz) * vz
+    out[2] += 0.5 * k * stretch * stretch * (1.0 - keep * keep) - dt * viscous
     return fx + tx, fy + ty, fz + tz, near
 
 

@@ -85,9 +85,7 @@ def draw_stages(snapshots: Sequence[Snapshot], sheet: str | None = None, box: Bo
     figure = figures.new_figure(min(3.0 * count, 16.0), min(3.0, 16.0 / count) + 0.4)
     for number, snapshot in enumerate(snapshots, start=1):
         part = snapshot.sheet(name)
-        title = (
-            f"{snapshot.stage}\n{1e3 * snapshot.time_s:.0f} ms, lift {snapshot.loads['tool_lift_mm']:.0f} mm"
-        )
+        title = f"{snapshot.stage}\n{1e3 * snapshot.time_s:.0f} ms, lift {snapshot.loads['tool_lift_mm']:.0f} mm"
         axes = figures.plan_axes(figure, frame, "", (1, count, number))
         axes.set_title(title, fontsize=8.5, color=figures.INK)
         axes.imshow(formed_image(part, None, frame, pixels=500), extent=frame, origin="lower")

@@ -28,9 +28,7 @@ def draw_formed(sheet: SheetSnapshot, surface: PlySurface | None = None, box: Bo
     figure = figures.new_figure(7.4, 7.4)
     note = " (lines every 10 mm along the fibres)" if surface is not None else ""
     axes = figures.plan_axes(figure, frame, f"{sheet.name} from above{note}")
-    axes.imshow(
-        formed_image(sheet, surface, frame), extent=frame, origin="lower", interpolation="antialiased"
-    )
+    axes.imshow(formed_image(sheet, surface, frame), extent=frame, origin="lower", interpolation="antialiased")
     figures.scale_bar(axes, frame)
     return figure
 
@@ -93,14 +91,10 @@ def draw_outline(surface: PlySurface, result: WrinkleResult, tool: TriangleMesh 
             axes.plot(closed[:, 0], closed[:, 1], **(style if number == 0 else style | {"label": None}))
     if tool is not None:
         segments = base_segments(tool)
-        axes.add_collection(
-            LineCollection(list(segments), colors="#009e73", linewidths=1.2, label="tool at its base")
-        )
+        axes.add_collection(LineCollection(list(segments), colors="#009e73", linewidths=1.2, label="tool at its base"))
     _draw_wrinkles(axes, result)
     figures.scale_bar(axes, frame)
-    figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False
-    )
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
 
 
@@ -170,6 +164,8 @@ def _coloured(
     rgb = np.clip(rgb * (0.78 + 0.22 * light)[..., None], 0.0, 1.0)
     rgb[~view.covered] = 1.0
     axes.imshow(rgb, extent=view.box, origin="lower", interpolation="antialiased")
+    edge = view.covered.astype(float)
+    axes.contour(edge, levels=[0.5], colors=figures.MUTED, linewidths=0.7, extent=view.box, origin="lower")
     return figure.colorbar(scale, ax=axes, shrink=0.85, extend=extend)
 
 

@@ -38,9 +38,7 @@ class TopView:
         """Images (..., rows, columns) of a node field (n, m) or (c, n, m); NaN where there is no sheet."""
         stacked = values.reshape(-1, *values.shape[-2:])
         image = np.full((len(stacked), *self.z.shape), np.nan)
-        image[:, self.covered] = at_points(
-            stacked, np.stack([self.u[self.covered], self.v[self.covered]], axis=1)
-        ).T
+        image[:, self.covered] = at_points(stacked, np.stack([self.u[self.covered], self.v[self.covered]], axis=1)).T
         return image if values.ndim == 3 else image[0]
 
 
@@ -97,12 +95,8 @@ def _triangle(
     area = bx * cy - by * cx
     if abs(area) < 1e-12:
         return
-    for row in range(
-        max(0, int(np.ceil(ay + min(0.0, by, cy)))), min(z.shape[0], int(ay + max(0.0, by, cy)) + 1)
-    ):
-        for col in range(
-            max(0, int(np.ceil(ax + min(0.0, bx, cx)))), min(z.shape[1], int(ax + max(0.0, bx, cx)) + 1)
-        ):
+    for row in range(max(0, int(np.ceil(ay + min(0.0, by, cy)))), min(z.shape[0], int(ay + max(0.0, by, cy)) + 1)):
+        for col in range(max(0, int(np.ceil(ax + min(0.0, bx, cx)))), min(z.shape[1], int(ax + max(0.0, bx, cx)) + 1)):
             px, py = col - ax, row - ay
             s = (px * cy - py * cx) / area
             t = (bx * py - by * px) / area

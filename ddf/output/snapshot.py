@@ -140,9 +140,7 @@ def _sheet(scene: Scene, state: State, k: int) -> SheetSnapshot:
     fields = {"distance_to_tool_mm": gap.reshape(x.shape[1:]), "speed_mm_s": np.sqrt((v * v).sum(axis=0))}
     if info.kind == "diaphragm":
         cells = diaphragm_fields(scene, x, k)
-        return SheetSnapshot(
-            info.name, info.kind, x, np.ones_like(cells["thickness_mm"], bool), fields, cells
-        )
+        return SheetSnapshot(info.name, info.kind, x, np.ones_like(cells["thickness_mm"], bool), fields, cells)
     surface = ply_surface(scene, state, k)
     bar1, bar2 = sheet_scalars(model, model.bar1, k), sheet_scalars(model, model.bar2, k)
     _, _, k1, k2 = node_curvatures(x, bar1, bar2)

@@ -81,9 +81,7 @@ def write_sheet(path: Path, sheet: SheetSnapshot, time_s: float) -> None:
         key: np.ascontiguousarray(v.ravel()[used], dtype=np.float32) for key, v in sheet.point_fields.items()
     }
     point_fields |= {"row": (used // m).astype(np.int32), "col": (used % m).astype(np.int32)}
-    cell_fields = {
-        key: np.ascontiguousarray(v[sheet.exists], dtype=np.float32) for key, v in sheet.cell_fields.items()
-    }
+    cell_fields = {key: np.ascontiguousarray(v[sheet.exists], dtype=np.float32) for key, v in sheet.cell_fields.items()}
     write_vtu(path, points, quads.reshape(-1, 4), point_fields, cell_fields, time_s)
 
 
@@ -154,6 +152,4 @@ def read_pvd(path: Path) -> list[tuple[float, str]]:
         sets = ElementTree.parse(path).getroot().iter("DataSet")
         return [(float(item.attrib["timestep"]), item.attrib["file"]) for item in sets]
     except (OSError, ElementTree.ParseError, KeyError, ValueError) as error:
-        raise DdfError(
-            f"{path} cannot be read: {error}", "remove it to start a new list of frames"
-        ) from error
+        raise DdfError(f"{path} cannot be read: {error}", "remove it to start a new list of frames") from error

@@ -94,9 +94,7 @@ def ply_bending(patch, x, seam=None):
     f = np.zeros_like(x)
     for low, high in _blocks(x.shape[1], seam):
         work = np.full((72, x.shape[2] + 2), np.nan)
-        bending_forces(
-            x, f, patch.bar1, patch.bar2, patch.triple1, patch.triple2, patch.sheet, low, high, work
-        )
+        bending_forces(x, f, patch.bar1, patch.bar2, patch.triple1, patch.triple2, patch.sheet, low, high, work)
     return f
 
 

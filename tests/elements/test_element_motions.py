@@ -16,7 +16,11 @@ def test_forces_of_a_ply_turn_with_it(seed):
     x = p.wavy(patch.rest, rng)
     rotation, shift = p.random_rotation(rng), rng.normal(size=(3, 1, 1)) * 20.0
     y = p.turned(rotation, x) + shift
-    kinds = (lambda q: p.ply_shear(patch, q, table), lambda q: p.ply_bending(patch, q), lambda q: p.ply_tension(patch, q))
+    kinds = (
+        lambda q: p.ply_shear(patch, q, table),
+        lambda q: p.ply_bending(patch, q),
+        lambda q: p.ply_tension(patch, q),
+    )
     for force in kinds:
         assert p.relative(force(y), p.turned(rotation, force(x))) < 1e-9
 

@@ -27,9 +27,7 @@ def test_the_thickness_keeps_the_volume_and_a_flat_scene_is_not_stretched(scene,
     t0 = scene.case.diaphragms.thickness_mm
     np.testing.assert_allclose(cells["thickness_mm"] * cells["stretch_1"] * cells["stretch_2"], t0)
     flat = take_snapshot(flat_scene, flat_scene.state)
-    np.testing.assert_allclose(
-        flat.sheets[3].cell_fields["stretch_1"], flat_scene.case.diaphragms.pre_stretch
-    )
+    np.testing.assert_allclose(flat.sheets[3].cell_fields["stretch_1"], flat_scene.case.diaphragms.pre_stretch)
     assert np.abs(flat.sheets[1].cell_fields["shear_angle_deg"]).max() < 1e-5
 
 
@@ -85,9 +83,7 @@ def test_frames_are_read_back_and_pruned(scene, folder):
     assert frame["time_s"] == 0.01
     assert len(frame["cells"]) == sheet.exists.sum()
     np.testing.assert_array_equal(frame["points"], sheet.x[:, frame["row"], frame["col"]].T)
-    np.testing.assert_allclose(
-        frame["shear_angle_deg"], sheet.cell_fields["shear_angle_deg"][sheet.exists], rtol=1e-6
-    )
+    np.testing.assert_allclose(frame["shear_angle_deg"], sheet.cell_fields["shear_angle_deg"][sheet.exists], rtol=1e-6)
     lift = run.read_frame("tool", 2)["points"] - run.read_frame("tool", 0)["points"]
     np.testing.assert_allclose(lift, np.tile([0.0, 0.0, 20.0], (len(lift), 1)), atol=1e-9)
     again = FrameWriter(folder, scene)

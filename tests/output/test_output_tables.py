@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from tiny_scene import make_scene
 
 from ddf.errors import UsageError
 from ddf.metrics import WrinkleResult, ply_metrics
@@ -13,14 +14,10 @@ from ddf.output.results import open_run
 from ddf.output.snapshot import ply_surface
 from ddf.output.tables import HistoryWriter, write_metrics, write_profiles, write_wrinkles
 
-from conftest import make_scene
-
 
 def append(writer, scene, *steps):
     for step in steps:
-        writer.append(
-            step, step * 1e-3, "lift", scene.path.at(0.01), energies(scene.model, scene.state), 1e-3, 0.5
-        )
+        writer.append(step, step * 1e-3, "lift", scene.path.at(0.01), energies(scene.model, scene.state), 1e-3, 0.5)
 
 
 def test_history_is_cut_at_the_step_of_the_checkpoint(scene, folder):
