@@ -363,13 +363,13 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
-        places.append(np.concatenate([place, np.full((1, *follow.shape), UNKNOWN)]).ravel())
+        places.append(np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((1, *follow.shape))]).ravel())
         anchors.append(place.ravel())
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
         size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
         blocks = math.ceil(int(sheets[slave]["rows"]) / size)
         first += follow.size
-        buffer += 3 * n * m * blocks
+        buffer += 4 * n * m * blocks
         span += n * blocks
     return np.array(records, dtype=PAIR), np.concatenate(exposed), np.concatenate(places), np.concatenate(anchors)
 

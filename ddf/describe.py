@@ -8,7 +8,7 @@ from ddf.scene import Scene
 BYTES_A_NODE = 8 * (3 * 3 + 8) + 4 * 2
 BYTES_A_CONTACT = 8 * 5 + 2
 NANOSECONDS_A_NODE = {"ply": 120.0, "diaphragm": 100.0}
-NANOSECONDS_A_CONTACT = 90.0
+NANOSECONDS_A_CONTACT = 45.0
 
 
 def memory_bytes(scene: Scene) -> int:
@@ -19,7 +19,7 @@ def memory_bytes(scene: Scene) -> int:
     for pair in model.pairs:
         master = model.sheets[pair["master"]]
         blocks = int((model.blocks["sheet"] == pair["slave"]).sum())
-        buffers += 24 * int(master["rows"] * master["cols"]) * blocks
+        buffers += 32 * int(master["rows"] * master["cols"]) * blocks
     return BYTES_A_NODE * nodes + BYTES_A_CONTACT * int(model.exposed.size) + buffers + int(model.tool.nbytes)
 
 

@@ -10,7 +10,7 @@ name           shape                 meaning [unit]
 ============== ===================== =========================================================================
 x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] without fibre tension;
                                      sheet k is the slice 3*node : 3*(node + rows*cols) as (3, rows, cols)
-place          (3, P)                where a contact slave stands on its master: grid coordinates (u, v), gap
+place          (4, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate
 anchor         (2, P)                where its friction spring is anchored, grid coordinates
 tool_anchor    (3, Q)                anchors of the tool's contact points, tool frame [mm]
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]

@@ -101,7 +101,8 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
         plies=run.metrics["plies"], audit=info["audit"], energies=last, settings=run.resolved_text,
         versions={"ddf": info["ddf"], "Python": info["python"], **info["packages"]}, notes=notes,
     )  # fmt: skip
-    return write_report(out, report)
+    write_report(out, report)
+    return out / "report.html"
 
 
 def rebuild_report(path: Path) -> Path:

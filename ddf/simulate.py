@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance
 from ddf.dynamics.team import Team
 from ddf.elements.rubber import cone_volume
 from ddf.elements.tension import FAST, LINES
-from ddf.model import DIAPHRAGM, PLY, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
+from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
 from ddf.scene import Scene
 
+BATCH = 10  # steps between two looks at how fast the sheets are
 REACH_SPEED = 500.0  # mm/s: least relative speed that sleeping cells and resting nodes allow for
 
 
@@ -34,7 +36,7 @@ def make_work(model: Model, members: int) -> Work:
     for pair in model.pairs:
         n, m = (int(model.sheets[pair["master"]][key]) for key in ("rows", "cols"))
         blocks = int(np.sum(model.blocks["sheet"] == pair["slave"]))
-        buffers = max(buffers, int(pair["buffer"]) + 3 * n * m * blocks)
+        buffers = max(buffers, int(pair["buffer"]) + 4 * n * m * blocks)
         spans = max(spans, int(pair["span"]) + n * blocks)
     bundles: tuple[list[tuple[int, int, int]], ...] = ([], [])
     for k in np.flatnonzero(model.sheets["kind"] == PLY):
@@ -45,8 +47,9 @@ def make_work(model: Model, members: int) -> Work:
     bottom = model.sheets[0]
     cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1)
     return Work(
-        scratch=np.zeros((members, SCRATCH_ROWS * widest)), buffers=np.zeros(buffers),
-        spans=np.zeros((spans, 2), np.int64), carry=np.zeros((model.blocks.size, 3, widest)),
+        scratch=np.zeros((members, SCRATCH_ROWS * widest)), packed=np.zeros(4 * model.mass.size),
+        buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
+        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, 3, widest)),
         sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8),
         bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
         lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 8 * longest * LINES)),
@@ -61,6 +64,7 @@ class Simulation:
         self.model, self.state = scene.model, scene.state
         self.team = Team(threads)
         self.work = make_work(scene.model, threads)
+        self._followed = np.where(scene.model.exposed, 0, -1).astype(np.int8)
         self._volumes = self._swept()
 
     @property
@@ -89,19 +93,33 @@ class Simulation:
         return float(np.sqrt(_largest_square(sheet_vectors(self.model, self.state.v, k))))
 
     def advance(self, steps: int) -> None:
-        """Run `steps` steps, as one batch: batches must be the same in a run that is resumed."""
+        """Run `steps` steps. Batches must be the same in a run that is resumed: they set who rests how long."""
+        if steps == 0:
+            self._batch(0)
+        while steps > 0:
+            self._batch(min(steps, BATCH))
+            steps -= BATCH
+
+    def _batch(self, steps: int) -> None:
         model, state = self.model, self.state
         times = (self.step + np.arange(steps)) * model.dt
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
-        fastest = max(self.fastest(k) for k in range(model.sheets.size))
-        speed = max(REACH_SPEED, 4.0 * fastest + float(np.abs(schedule[:, TOOL_SPEED]).max(initial=0.0)))
         self.work.sleep[:] = 0
-        self.work.rest[:] = np.where(model.exposed, 0, -1)
-        self.team.run(advance, model, state, self.work, schedule, self.step, speed * model.dt)
+        self.work.rest[:] = self._followed
+        reach = self._reach_speed(schedule) * model.dt
+        self.team.run(advance, model, state, self.work, schedule, self.step, reach)
         state.clock[0] += steps
         state.clock[1] = state.clock[0] * model.dt
         if steps:
             self._account_pressure(schedule)
+
+    def _reach_speed(self, schedule: np.ndarray) -> float:
+        """Relative speed that nothing exceeds in this batch [mm/s]: twice today's, and what pressure can add."""
+        fastest = max(self.fastest(k) for k in range(self.model.sheets.size))
+        pressure = float(np.abs(schedule[:, [PRESSURE_TOP, PRESSURE_BOTTOM]]).max(initial=0.0))
+        gain = 2.0 * pressure / self.model.tool_mass * BATCH * self.model.dt
+        tool = float(np.abs(schedule[:, TOOL_SPEED]).max(initial=0.0))
+        return max(REACH_SPEED, 4.0 * fastest + gain + tool)
 
     def _account_pressure(self, schedule: np.ndarray) -> None:
         """Work of the pressures over the batch: the mean of both ends times the swept volume."""

@@ -10,6 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+TANGENTIAL = 0.3
+"""Stiffness and damping of the friction spring over those of the normal one. At 1 sticking contacts, a
+thickness off the mid-surfaces, chatter at the step's limit; 0.3 still sticks within 0.1 mm under vacuum."""
+
 
 @njit(inline="always")
 def coulomb(trial, limit):

@@ -6,7 +6,7 @@ r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     place  r^a = contravariant components of r (metric of S_1, S_2): the Newton step
-    slip   s = (place - anchor)^a S_a;        friction spring of stiffness K A, Coulomb limit mu N
+    slip   s = (place - anchor)^a S_a;        friction spring of stiffness 0.3 K A, Coulomb limit mu N
     rates  of gap and slip are their changes since the last step over dt, so they turn with the master
 
 The force f on the slave is balanced on the master's nodes by
@@ -21,6 +21,10 @@ A node whose place lies outside the master's fabric is not in contact. One that 
 steps as it needs at the given reach to come near.
 Forces on the master go to one buffer a block of slave rows; the buffers are summed in a fixed order, so the
 result does not depend on the number of threads.
+
+The work goes by chunks of nodes that are awake, in passes over arrays short enough for the first cache:
+`_fetch` interpolates node by node, `_project` and `_press` are loops that the compiler vectorises over nodes,
+`_settle` decides who touches, `_scatter` adds the forces node by node.
 """
 
 from __future__ import annotations
@@ -28,138 +32,316 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.contact.friction import coulomb, length
+from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.contact.patch import interpolate, spread, weights
+from ddf.contact.quad import quad, store
 from ddf.elements.tension import FAST
 
 LONGEST_REST = 8
 UNKNOWN = 1.0e30  # gap of a node that has rested
 DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost, not pressed
+NOWHERE = np.int64(2**40)  # first column of an empty span
+
+CHUNK = 64
+"""Awake nodes that go through the passes together."""
+
+ONE, TWO, FOUR = np.uint64(1), np.uint64(2), np.uint64(4)
+STRIDE = np.uint64(4 * CHUNK)
+# fields of a chunk: where each begins in `w`
+(
+    X, Y, Z,  # slave node [mm]
+    U0, V0, TU, TV,  # its place at the start, and from the patch's centre
+    LAST, AREA, AU, AV,  # gap of the last step, area (0: does not touch), anchor
+    DU, DV, U, V,  # Newton step, new place
+    NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
+    GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
+    NEW_AU, NEW_AV,  # new anchor
+    OLD_RATE, RATE,  # gap's rate in the last step and now
+    FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
+) = (np.uint64(k * CHUNK) for k in range(37))  # fmt: skip
+FIELDS = 37
+
+
+def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Scratch of the passes, one row a member of the team."""
+    return (
+        np.zeros((members, FIELDS * CHUNK)),
+        np.zeros((members, 12 * CHUNK)),
+        np.zeros((members, 3, CHUNK), np.int64),
+        np.zeros((members, CHUNK), np.uint64),
+    )
+
+
+@njit(**FAST)
+def touched(span, i):
+    """First and last+1 column written in row i of a buffer: those of the patches centred in rows i-1 .. i+1."""
+    low, high = max(i - 1, 0), min(i + 2, span.shape[0])
+    a, b = NOWHERE, np.int64(0)
+    for k in range(low, high):
+        a, b = min(a, span[k, 0]), max(b, span[k, 1])
+    return a, b
 
 
 @njit(**FAST)
 def clear_buffer(buffer, span):
-    """Zero what the last step wrote: buffer (3, n, m), span (n, 2) columns touched in each row."""
+    """Zero what the last step wrote: buffer (n, m, 4), span (n, 2) columns touched by patches centred in a row."""
     for i in range(span.shape[0]):
-        a, b = span[i, 0], span[i, 1]
-        if b > a:
-            for c in range(3):
-                for j in range(a, b):
-                    buffer[c, i, j] = 0.0
-            span[i, 0] = 0
-            span[i, 1] = 0
-
-
-@njit(inline="always")
-def _touch(span, i, j):
-    """Note that columns j-1 .. j+1 of row i of a buffer are written."""
-    if span[i, 1] == 0:
-        span[i, 0] = j - 1
-        span[i, 1] = j + 2
-    else:
-        if j - 1 < span[i, 0]:
-            span[i, 0] = j - 1
-        if j + 2 > span[i, 1]:
-            span[i, 1] = j + 2
+        a, b = touched(span, i)
+        for j in range(a, b):
+            for c in range(4):
+                buffer[i, j, c] = 0.0
+    for i in range(span.shape[0]):
+        span[i, 0] = NOWHERE
+        span[i, 1] = 0
 
 
 @njit(**FAST)
-def layer_forces(xs, fs, area, xm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, out):
+def collect_row(f, buffer, i, a, b):
+    """Add columns a..b-1 of row i of a buffer (n, m, 4) to f (3, n, m)."""
+    f0, f1, f2, row = f[0, i], f[1, i], f[2, i], buffer[i]
+    for j in range(a, b):
+        f0[j] += row[j, 0]
+        f1[j] += row[j, 1]
+        f2[j] += row[j, 2]
+
+
+@njit(**FAST)
+def pack_rows(x, packed, low, high):
+    """Rows low..high-1 of x (3, n, m) as (x, y, z, 0) into packed (n, m, 4)."""
+    for i in range(low, high):
+        x0, x1, x2, row = x[0, i], x[1, i], x[2, i], packed[i]
+        for j in range(x0.shape[0]):
+            row[j, 0] = x0[j]
+            row[j, 1] = x1[j]
+            row[j, 2] = x2[j]
+            row[j, 3] = 0.0
+
+
+@njit(**FAST)
+def _find(u, v, centre, patch, w, t):
+    """Choose the patch around a place; False where the master has none near.
+
+    patch (3, CHUNK): where its first node begins in the packed master, row and column of its centre.
+    """
+    i = np.uint64(min(max(int(u + 0.5), 0), centre.shape[0] - 1))
+    j = np.uint64(min(max(int(v + 0.5), 0), centre.shape[1] - 1))
+    p, q = np.int64(centre[i, j, 0]), np.int64(centre[i, j, 1])
+    patch[0, t] = 4 * ((p - 1) * centre.shape[1] + q - 1)
+    patch[1, t] = p
+    patch[2, t] = q
+    w[U0 + t], w[V0 + t], w[TU + t], w[TV + t] = u, v, u - p, v - q
+    return p >= 0
+
+
+@njit(**FAST)
+def _awake(node, end, rest, place, centre, patch, nodes, w):
+    """Fill a chunk with nodes that are awake from `node` on; returns the node to go on with, and how many."""
+    t = np.uint64(0)
+    while node < end and t < np.uint64(CHUNK):
+        if rest[node] > 0:
+            rest[node] -= 1
+        elif rest[node] == 0:
+            if _find(place[0, node], place[1, node], centre, patch, w, t):
+                nodes[t] = node
+                t += ONE
+            else:
+                rest[node] = LONGEST_REST
+        node += ONE
+    return node, t
+
+
+@njit(**FAST)
+def _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols):
+    """Copy what the slave nodes bring; the surface at their places, quads S, S_1, S_2, into `surface`."""
+    stride = FOUR * cols
+    for t in range(count):
+        node = nodes[t]
+        w[X + t], w[Y + t], w[Z + t] = x[0, node], x[1, node], x[2, node]
+        w[LAST + t], w[OLD_RATE + t], w[AREA + t] = place[2, node], place[3, node], area[node]
+        w[AU + t], w[AV + t] = anchor[0, node], anchor[1, node]
+        a, b = weights(w[TU + t]), weights(w[TV + t])
+        s, su, sv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
+        store(surface, FOUR * t, s)
+        store(surface, FOUR * t + STRIDE, su)
+        store(surface, FOUR * t + STRIDE + STRIDE, sv)
+
+
+@njit(**FAST)
+def _tangents(surface, t):
+    """S_1 and S_2 of node t of a chunk."""
+    k, l = FOUR * t + STRIDE, FOUR * t + STRIDE + STRIDE
+    return surface[k], surface[k + ONE], surface[k + TWO], surface[l], surface[l + ONE], surface[l + TWO]
+
+
+@njit(**FAST)
+def _project(w, surface, count, end_u, end_v, sign, offset):
+    """One Newton step of the projection of all nodes of a chunk: places, normals, gaps."""
+    for t in range(count):
+        k = FOUR * t
+        ux, uy, uz, vx, vy, vz = _tangents(surface, t)
+        rx, ry, rz = w[X + t] - surface[k], w[Y + t] - surface[k + ONE], w[Z + t] - surface[k + TWO]
+        guu = ux * ux + uy * uy + uz * uz
+        gvv = vx * vx + vy * vy + vz * vz
+        guv = ux * vx + uy * vy + uz * vz
+        inv = 1.0 / max(guu * gvv - guv * guv, 1e-30)
+        ru = rx * ux + ry * uy + rz * uz
+        rv = rx * vx + ry * vy + rz * vz
+        du = min(max((gvv * ru - guv * rv) * inv, -0.5), 0.5)
+        dv = min(max((guu * rv - guv * ru) * inv, -0.5), 0.5)
+        il = np.sqrt(inv)
+        nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
+        d = rx * nx + ry * ny + rz * nz
+        w[DU + t] = du
+        w[DV + t] = dv
+        w[U + t] = min(max(w[U0 + t] + du, -1.0), end_u)
+        w[V + t] = min(max(w[V0 + t] + dv, -1.0), end_v)
+        w[NX + t] = nx
+        w[NY + t] = ny
+        w[NZ + t] = nz
+        w[D + t] = d
+        w[GAP + t] = sign * d - offset
+        w[GUU + t] = guu
+        w[GUV + t] = guv
+        w[GVV + t] = gvv
+        w[INVERSE + t] = inv
+
+
+@njit(**FAST)
+def _settle(w, nodes, count, place, anchor, rest, cell, deepest, inverse_reach):
+    """New places; the anchors of nodes that do not touch, whose area is set to 0. Returns how many touch."""
+    end_u, end_v = cell.shape[0] - 1.0, cell.shape[1] - 1.0
+    touching = 0
+    for t in range(count):
+        node, u, v, gap = nodes[t], w[U + t], w[V + t], w[GAP + t]
+        place[0, node] = u
+        place[1, node] = v
+        place[2, node] = gap
+        place[3, node] = 0.0
+        touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
+        if touches and cell[np.uint64(np.int64(u)), np.uint64(np.int64(v))] > 0.0:
+            touching += 1
+            continue
+        w[AREA + t] = 0.0
+        anchor[0, node] = u
+        anchor[1, node] = v
+        if gap >= 0.0:
+            steps = min(np.float64(LONGEST_REST), gap * inverse_reach)
+            rest[node] = np.int8(steps)
+            if steps >= 1.0:
+                place[2, node] = UNKNOWN
+    return touching
+
+
+@njit(**FAST)
+def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
+    """Forces and new anchors of all nodes of a chunk; returns the four sums of `layer_forces`."""
+    inverse_dt = 1.0 / dt
+    normal = tangential = rubbed = damped = 0.0
+    for t in range(count):
+        ux, uy, uz, vx, vy, vz = _tangents(surface, t)
+        du, dv, gap, last = w[DU + t], w[DV + t], w[GAP + t], w[LAST + t]
+        guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
+        nx, ny, nz, d = w[NX + t], w[NY + t], w[NZ + t], w[D + t]
+        k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
+        rate = (gap - last) * inverse_dt if last < UNKNOWN else 0.0
+        fn = max(0.0, -k * gap - c * rate)
+        old_u, old_v, u, v = w[AU + t], w[AV + t], w[U + t], w[V + t]
+        au, av = w[U0 + t] - old_u, w[V0 + t] - old_v
+        tu, tv = au + du, av + dv
+        mx, my, mz = du * ux + dv * vx, du * uy + dv * vy, du * uz + dv * vz
+        px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
+        kt, cs = TANGENTIAL * k, TANGENTIAL * c * inverse_dt
+        tx, ty, tz = -kt * px - cs * mx, -kt * py - cs * my, -kt * pz - cs * mz
+        limit = mu * fn
+        share = coulomb(length(tx, ty, tz), limit)
+        tx, ty, tz = tx * share, ty * share, tz * share
+        stretch2 = px * px + py * py + pz * pz
+        # where friction slips the anchor follows until the spring alone would carry it
+        slips = share < 1.0
+        keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if slips else 1.0
+        w[NEW_AU + t] = u - keep * tu if slips else old_u
+        w[NEW_AV + t] = v - keep * tv if slips else old_v
+        normal += k * gap * gap
+        tangential += kt * stretch2 * keep * keep
+        held = kt * keep  # friction less the spring's part of it is viscous
+        viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
+        rubbed += 0.5 * kt * stretch2 * (1.0 - keep * keep) - viscous
+        w[RATE + t] = rate
+        # the damping of the last step worked on the mean of the rates before and after it
+        damped += 0.5 * c * w[OLD_RATE + t] * (w[OLD_RATE + t] + rate)
+        fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
+        cu = d * (tx * ux + ty * uy + tz * uz)
+        cv = d * (tx * vx + ty * vy + tz * vz)
+        eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
+        w[FX + t], w[FY + t], w[FZ + t] = fx, fy, fz
+        w[GX + t], w[GY + t], w[GZ + t] = eu * nx - du * fx, eu * ny - du * fy, eu * nz - du * fz
+        w[HX + t], w[HY + t], w[HZ + t] = ev * nx - dv * fx, ev * ny - dv * fy, ev * nz - dv * fz
+    return 0.5 * normal, 0.5 * tangential, rubbed, dt * damped
+
+
+@njit(**FAST)
+def _scatter(w, patch, nodes, count, f, place, anchor, buffer, span, cols):
+    """Add the forces of the nodes that touch to the slave and to the master's buffer; store their anchors."""
+    stride = FOUR * cols
+    for t in range(count):
+        if w[AREA + t] == 0.0:
+            continue
+        node = nodes[t]
+        anchor[0, node] = w[NEW_AU + t]
+        anchor[1, node] = w[NEW_AV + t]
+        place[3, node] = w[RATE + t]
+        fx, fy, fz = w[FX + t], w[FY + t], w[FZ + t]
+        f[0, node] += fx
+        f[1, node] += fy
+        f[2, node] += fz
+        a, b = weights(w[TU + t]), weights(w[TV + t])
+        along_u = quad(w[GX + t], w[GY + t], w[GZ + t])
+        along_v = quad(w[HX + t], w[HY + t], w[HZ + t])
+        spread(buffer, np.uint64(patch[0, t]), stride, a, b, quad(-fx, -fy, -fz), along_u, along_v)
+        p, q = patch[1, t], patch[2, t]
+        span[p, 0] = min(span[p, 0], q - 1)
+        span[p, 1] = max(span[p, 1], q + 2)
+
+
+@njit(**FAST)
+def _chunk(
+    w, surface, patch, nodes, count, x, f, area, y, cell, place, anchor, rest, buffer, span, pair, reach, dt, out
+):
+    """All passes over one chunk; arguments as in `layer_forces`, grids of nodes and quads made flat."""
+    n_rows, n_cols = cell.shape
+    cols = np.uint64(n_cols)
+    _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols)
+    _project(w, surface, count, np.float64(n_rows), np.float64(n_cols), pair.sign, pair.offset)
+    deepest = -DEEPEST * pair.offset
+    if _settle(w, nodes, count, place, anchor, rest, cell, deepest, 1.0 / reach) > 0:
+        slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
+        sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, pair.damping, slow, dt)
+        for k in range(4):
+            out[k] += sums[k]
+        _scatter(w, patch, nodes, count, f, place, anchor, buffer, span, cols)
+
+
+@njit(**FAST)
+def layer_forces(
+    xs, fs, area, xm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, scratch, out
+):
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
-    xs, fs (3, n, m) slave; xm (3, N, M) master; area (n, m) [mm2]; cell (N, M) area of the master's cells;
-    centre (N, M, 2) from `patch_centres`; place (3, n, m): (u, v) and gap of the last step, anchor (2, n, m),
-    both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed; buffer (3, N, M),
-    span (N, 2); reach: way that a node can go in a step [mm]. out (4,): normal and tangential spring energy
-    now, friction and damping loss of this step [N mm].
+    xs, fs (3, n, m) slave; xm (N, M, 4) master as from `pack_rows`; area (n, m) [mm2]; cell (N, M) area of the
+    master's cells; centre (N, M, 2) from `patch_centres`; place (4, n, m): (u, v), gap and its rate of the last step,
+    anchor (2, n, m), both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed;
+    buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a step [mm];
+    scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy now, friction and damping loss of this step [N mm].
     """
-    n_rows, n_cols = xm.shape[1], xm.shape[2]
-    sign, offset, mu = pair.sign, pair.offset, pair.friction
-    x0, x1, x2 = xm[0], xm[1], xm[2]
-    b0, b1, b2 = buffer[0], buffer[1], buffer[2]
-    slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
-    inverse_dt = 1.0 / dt
-    for i in range(low, high):
-        for j in range(xs.shape[2]):
-            if rest[i, j] != 0:
-                if rest[i, j] > 0:
-                    rest[i, j] -= 1
-                continue
-            u0, w0 = place[0, i, j], place[1, i, j]
-            near_i, near_j = min(max(int(u0 + 0.5), 0), n_rows - 1), min(max(int(w0 + 0.5), 0), n_cols - 1)
-            if centre[near_i, near_j, 0] < 0:
-                rest[i, j] = LONGEST_REST
-                continue
-            p, q = np.uint64(centre[near_i, near_j, 0]), np.uint64(centre[near_i, near_j, 1])
-            a, b = weights(u0 - np.float64(p)), weights(w0 - np.float64(q))
-            sx, ux, vx = interpolate(x0, p, q, a, b)
-            sy, uy, vy = interpolate(x1, p, q, a, b)
-            sz, uz, vz = interpolate(x2, p, q, a, b)
-            rx, ry, rz = xs[0, i, j] - sx, xs[1, i, j] - sy, xs[2, i, j] - sz
-            guu = ux * ux + uy * uy + uz * uz
-            gvv = vx * vx + vy * vy + vz * vz
-            guv = ux * vx + uy * vy + uz * vz
-            inv = 1.0 / max(guu * gvv - guv * guv, 1e-30)
-            ru = rx * ux + ry * uy + rz * uz
-            rv = rx * vx + ry * vy + rz * vz
-            du = min(max((gvv * ru - guv * rv) * inv, -0.5), 0.5)
-            dv = min(max((guu * rv - guv * ru) * inv, -0.5), 0.5)
-            u, v = min(max(u0 + du, -1.0), n_rows + 0.0), min(max(w0 + dv, -1.0), n_cols + 0.0)
-            place[0, i, j] = u
-            place[1, i, j] = v
-            il = np.sqrt(inv)
-            nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
-            d = rx * nx + ry * ny + rz * nz
-            gap = sign * d - offset
-            last = place[2, i, j]
-            place[2, i, j] = gap
-            if gap >= 0.0:
-                anchor[0, i, j] = u
-                anchor[1, i, j] = v
-                rest[i, j] = min(LONGEST_REST, int(gap / reach))
-                if rest[i, j] > 0:
-                    place[2, i, j] = UNKNOWN
-                continue
-            inside = u >= 0.0 and v >= 0.0 and u < n_rows - 1.0 and v < n_cols - 1.0
-            if not inside or gap < -DEEPEST * offset or cell[int(max(u, 0.0)), int(max(v, 0.0))] <= 0.0:
-                anchor[0, i, j] = u
-                anchor[1, i, j] = v
-                continue
-            k, c = pair.stiffness * area[i, j], pair.damping * area[i, j] * slow
-            rate = (gap - last) * inverse_dt if last < UNKNOWN else 0.0
-            fn = max(0.0, -k * gap - c * rate)
-            au, av = u0 - anchor[0, i, j], w0 - anchor[1, i, j]
-            tu, tv = au + du, av + dv
-            mx, my, mz = du * ux + dv * vx, du * uy + dv * vy, du * uz + dv * vz
-            px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
-            cs = c * inverse_dt
-            tx, ty, tz = -k * px - cs * mx, -k * py - cs * my, -k * pz - cs * mz
-            share = coulomb(length(tx, ty, tz), mu * fn)
-            tx, ty, tz = tx * share, ty * share, tz * share
-            before = au * au * guu + 2.0 * au * av * guv + av * av * gvv
-            after = px * px + py * py + pz * pz
-            if share < 1.0:  # the anchor follows until the spring alone would carry the friction force
-                keep = min(1.0, mu * fn / max(k * np.sqrt(after), 1e-30))
-                anchor[0, i, j] = u - keep * tu
-                anchor[1, i, j] = v - keep * tv
-                after *= keep * keep
-            out[0] += 0.5 * k * gap * gap
-            out[1] += 0.5 * k * after
-            out[2] += 0.5 * k * (before - after) - (tx * mx + ty * my + tz * mz)
-            out[3] -= dt * (fn + k * gap) * rate * slow
-            fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
-            fs[0, i, j] += fx
-            fs[1, i, j] += fy
-            fs[2, i, j] += fz
-            cu = d * (tx * ux + ty * uy + tz * uz)
-            cv = d * (tx * vx + ty * vy + tz * vz)
-            eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
-            _touch(span, np.int64(p) - 1, np.int64(q))
-            _touch(span, np.int64(p), np.int64(q))
-            _touch(span, np.int64(p) + 1, np.int64(q))
-            k0 = (a[0] + du * a[3], dv * a[0], eu * a[3], ev * a[0])
-            k1 = (a[1] + du * a[4], dv * a[1], eu * a[4], ev * a[1])
-            k2 = (a[2] + du * a[5], dv * a[2], eu * a[5], ev * a[2])
-            spread(b0, p, q, b, fx, nx, k0, k1, k2)
-            spread(b1, p, q, b, fy, ny, k0, k1, k2)
-            spread(b2, p, q, b, fz, nz, k0, k1, k2)
+    size = xs.shape[1] * xs.shape[2]
+    x, f, place, anchor = xs.reshape((3, size)), fs.reshape((3, size)), place.reshape((4, size)), anchor.reshape((2, size))
+    rest, area = rest.reshape(size), area.reshape(size)
+    y, forces = xm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
+    w, surface, patch, nodes = scratch
+    node, end = np.uint64(low * xs.shape[2]), np.uint64(high * xs.shape[2])
+    while node < end:
+        node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
+        if t > np.uint64(0):
+            _chunk(
+                w, surface, patch, nodes, t, x, f, area, y, cell, place, anchor, rest, forces, span, pair, reach, dt, out
+            )

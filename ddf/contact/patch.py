@@ -7,6 +7,8 @@ clamped stack never came to rest). The spline's normal is continuous, so the pro
 With t = u - i in [-1/2, 1/2] the weights of nodes i-1, i, i+1 are  1/2 (1/2 - t)^2, 3/4 - t^2,
 1/2 (1/2 + t)^2. They sum to 1 and reproduce linear functions. The surface lies h^2 k / 8 inside a curve k
 of the nodes. Near an edge the last whole patch of 3 x 3 nodes is extended.
+
+Nodes and forces on them lie as (x, y, z, 0), so that one packed instruction serves all components (`quad.py`).
 """
 
 from __future__ import annotations
@@ -15,7 +17,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-ONE = np.uint64(1)
+from ddf.contact.quad import add_scaled, load, scaled, store
+from ddf.elements.tension import FAST
+
+FOUR, EIGHT = np.uint64(4), np.uint64(8)
 
 
 @njit(inline="always")
@@ -26,44 +31,48 @@ def weights(t):
 
 
 @njit(inline="always")
-def interpolate(y, i, j, a, b):
-    """One component at a place, and its derivatives along u and v; y (N, M), a and b from `weights`.
+def _mix(b0, b1, b2, y0, y1, y2):
+    """b0 y0 + b1 y1 + b2 y2."""
+    return add_scaled(b0, y0, add_scaled(b1, y1, scaled(b2, y2)))
 
-    i, j unsigned: numba then does without the test for negative indices.
+
+@njit(**FAST)
+def _along_row(y, k, b):
+    """One row of a patch: value and derivative along v; k: where its first node begins in y."""
+    y0, y1, y2 = load(y, k), load(y, k + FOUR), load(y, k + EIGHT)
+    return _mix(b[0], b[1], b[2], y0, y1, y2), _mix(b[3], b[4], b[5], y0, y1, y2)
+
+
+@njit(**FAST)
+def interpolate(y, k, stride, a, b):
+    """The place on the surface and its derivatives along u and v, as quads.
+
+    y: the nodes (4 N M,); k: where the patch's first node begins, stride: from row to row; a, b from `weights`.
     """
-    i0, i2, j0, j2 = i - ONE, i + ONE, j - ONE, j + ONE
-    y00, y01, y02 = y[i0, j0], y[i0, j], y[i0, j2]
-    y10, y11, y12 = y[i, j0], y[i, j], y[i, j2]
-    y20, y21, y22 = y[i2, j0], y[i2, j], y[i2, j2]
-    r0 = b[0] * y00 + b[1] * y01 + b[2] * y02
-    r1 = b[0] * y10 + b[1] * y11 + b[2] * y12
-    r2 = b[0] * y20 + b[1] * y21 + b[2] * y22
-    s0 = b[3] * y00 + b[4] * y01 + b[5] * y02
-    s1 = b[3] * y10 + b[4] * y11 + b[5] * y12
-    s2 = b[3] * y20 + b[4] * y21 + b[5] * y22
-    return (
-        a[0] * r0 + a[1] * r1 + a[2] * r2,
-        a[3] * r0 + a[4] * r1 + a[5] * r2,
-        a[0] * s0 + a[1] * s1 + a[2] * s2,
-    )
+    r0, s0 = _along_row(y, k, b)
+    r1, s1 = _along_row(y, k + stride, b)
+    r2, s2 = _along_row(y, k + stride + stride, b)
+    return _mix(a[0], a[1], a[2], r0, r1, r2), _mix(a[3], a[4], a[5], r0, r1, r2), _mix(a[0], a[1], a[2], s0, s1, s2)
 
 
-@njit(inline="always")
-def spread(buffer, i, j, b, force, couple, w0, w1, w2):
-    """Add  -W f + Q c  to nine nodes, one component; row k has W = w_k[0] b + w_k[1] b', Q = w_k[2] b + w_k[3] b'."""
-    i0, i2, j0, j2 = i - ONE, i + ONE, j - ONE, j + ONE
-    p0, q0 = w0[2] * couple - w0[0] * force, w0[3] * couple - w0[1] * force
-    p1, q1 = w1[2] * couple - w1[0] * force, w1[3] * couple - w1[1] * force
-    p2, q2 = w2[2] * couple - w2[0] * force, w2[3] * couple - w2[1] * force
-    buffer[i0, j0] += p0 * b[0] + q0 * b[3]
-    buffer[i0, j] += p0 * b[1] + q0 * b[4]
-    buffer[i0, j2] += p0 * b[2] + q0 * b[5]
-    buffer[i, j0] += p1 * b[0] + q1 * b[3]
-    buffer[i, j] += p1 * b[1] + q1 * b[4]
-    buffer[i, j2] += p1 * b[2] + q1 * b[5]
-    buffer[i2, j0] += p2 * b[0] + q2 * b[3]
-    buffer[i2, j] += p2 * b[1] + q2 * b[4]
-    buffer[i2, j2] += p2 * b[2] + q2 * b[5]
+@njit(**FAST)
+def _add_row(buffer, k, b, p, q):
+    """Add  b p + b' q  to the three nodes of a row."""
+    store(buffer, k, add_scaled(b[0], p, add_scaled(b[3], q, load(buffer, k))))
+    k += FOUR
+    store(buffer, k, add_scaled(b[1], p, add_scaled(b[4], q, load(buffer, k))))
+    k += FOUR
+    store(buffer, k, add_scaled(b[2], p, add_scaled(b[5], q, load(buffer, k))))
+
+
+@njit(**FAST)
+def spread(buffer, k, stride, a, b, value, along_u, along_v):
+    """Add  a b value + a' b along_u + a b' along_v  to nine nodes; the adjoint of `interpolate`."""
+    _add_row(buffer, k, b, add_scaled(a[0], value, scaled(a[3], along_u)), scaled(a[0], along_v))
+    k += stride
+    _add_row(buffer, k, b, add_scaled(a[1], value, scaled(a[4], along_u)), scaled(a[1], along_v))
+    k += stride
+    _add_row(buffer, k, b, add_scaled(a[2], value, scaled(a[5], along_u)), scaled(a[2], along_v))
 
 
 def patch_centres(exists: NDArray[np.bool_]) -> NDArray[np.int32]:

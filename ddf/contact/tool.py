@@ -17,7 +17,7 @@ from __future__ import annotations
 from numba import njit
 
 from ddf.contact.field import sample
-from ddf.contact.friction import coulomb, length
+from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.elements.tension import FAST
 
 FREE = 1.0e30
@@ -61,6 +61,7 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out)
     sx, sy, sz = sx - s * nx, sy - s * ny, sz - s * nz
     rate = nx * v[0] + ny * v[1] + nz * v[2]
     vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
+    k, c = TANGENTIAL * k, TANGENTIAL * c
     tx, ty, tz = -k * sx - c * vx, -k * sy - c * vy, -k * sz - c * vz
     limit = mu * normal
     share = coulomb(length(tx, ty, tz), limit)

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ddf.contact.layers import clear_buffer, layer_forces
+from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
 from ddf.contact.tool import tool_forces
 from ddf.dynamics.team import barrier, draw
 from ddf.elements.bending import bending_forces
@@ -59,8 +59,11 @@ class Work(NamedTuple):
     """Scratch memory. Nothing in it outlives a step but `sleep` and `rest`, set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
-    buffers: np.ndarray  # forces on masters, one (3, N, M) a pair and slave block
-    spans: np.ndarray  # (..., 2) columns written in each row of each buffer
+    packed: np.ndarray  # (4 N,) positions as (x, y, z, 0)
+    buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
+    spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
+    chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
+    sums: np.ndarray  # (members, 4)
     carry: np.ndarray  # (blocks, 3, widest + 2) row of the next block
     sleep: np.ndarray  # (n-1, m-1) int16: steps that a cell of the tool's sheet sleeps
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
@@ -105,19 +108,36 @@ def _first_block(model, k):
 def _buffer(work, model, pair, index):
     """Master force buffer and row spans of a pair for its slave's block number `index`."""
     master = model.sheets[pair.master]
-    size = 3 * master.rows * master.cols
+    size = 4 * master.rows * master.cols
     start = pair.buffer + index * size
-    buffer = work.buffers[start : start + size].reshape((3, master.rows, master.cols))
+    buffer = work.buffers[start : start + size].reshape((master.rows, master.cols, 4))
     span = work.spans[pair.span + index * master.rows : pair.span + (index + 1) * master.rows]
     return buffer, span
 
 
+@njit(inline="always")
+def _packed(work, sheet):
+    """Sheet's packed positions as (rows, cols, 4)."""
+    n = sheet.rows * sheet.cols
+    return work.packed[4 * sheet.node : 4 * (sheet.node + n)].reshape((sheet.rows, sheet.cols, 4))
+
+
 @njit(**FAST)
-def _layers(model, state, work, b, dt, reach):
+def _pack(model, state, work, b):
+    """Pack the positions of a block's rows for contact."""
+    block = model.blocks[b]
+    sheet = model.sheets[block.sheet]
+    pack_rows(vectors(state.x, sheet), _packed(work, sheet), block.low, block.high)
+
+
+@njit(**FAST)
+def _layers(model, state, work, member, b, dt, reach):
     """Forces of all pairs in which the block's sheet is the slave."""
     block = model.blocks[b]
     index = b - _first_block(model, block.sheet)
-    out = np.zeros(4)
+    out = work.sums[member]
+    out[:] = 0.0
+    scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member], work.chunks[3][member])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
         if pair.slave != block.sheet:
@@ -129,14 +149,14 @@ def _layers(model, state, work, b, dt, reach):
         first = pair.first
         layer_forces(
             vectors(state.x, slave), vectors(state.f, slave), scalars(model.area, slave),
-            vectors(state.x, master), scalars(model.cell, master),
+            _packed(work, master), scalars(model.cell, master),
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
             ),
-            state.place[3 * first : 3 * (first + n)].reshape((3, slave.rows, slave.cols)),
+            state.place[4 * first : 4 * (first + n)].reshape((4, slave.rows, slave.cols)),
             state.anchor[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols)),
             work.rest[first : first + n].reshape((slave.rows, slave.cols)),
-            buffer, span, pair, reach, dt, block.low, block.high, out,
+            buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
         )  # fmt: skip
     state.springs[b, NORMAL_SPRING] = out[0]
     state.springs[b, TANGENTIAL_SPRING] = out[1]
@@ -145,7 +165,7 @@ def _layers(model, state, work, b, dt, reach):
 
 
 @njit(**FAST)
-def _tool(model, state, work, row, b, dt, reach):
+def _tool(model, state, work, member, row, b, dt, reach):
     """Forces of the tool on a block of its sheet."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
@@ -153,7 +173,8 @@ def _tool(model, state, work, row, b, dt, reach):
     dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
     carry = work.carry[b]
     carry[:] = 0.0
-    out = np.zeros(4)
+    out = work.sums[member]
+    out[:] = 0.0
     law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_mass, model.tool_friction)
     done = tool_forces(
         vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), carry, dx, dy,
@@ -182,10 +203,9 @@ def _collect(model, state, work, b):
         while first + index < model.blocks.shape[0] and model.blocks[first + index].sheet == pair.slave:
             buffer, span = _buffer(work, model, pair, index)
             for i in range(block.low, block.high):
-                j0, j1 = span[i, 0], span[i, 1]
-                for c in range(3):
-                    for j in range(j0, j1):
-                        f[c, i, j] += buffer[c, i, j]
+                j0, j1 = touched(span, i)
+                if j1 > j0:
+                    collect_row(f, buffer, i, j0, j1)
             index += 1
     if block.sheet == model.tool_sheet and block.low > 0:
         for c in range(3):
@@ -291,14 +311,20 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     """
     blocks = model.blocks.shape[0]
     base = 0
+    b = draw(sync, base)
+    while b < blocks:
+        _pack(model, state, work, b)
+        b = draw(sync, base)
+    base += blocks + members
+    barrier(sync, members)
     for n in range(schedule.shape[0]):
         row = schedule[n]
         b = draw(sync, base)
         while b < blocks:
             _internal(model, state, row, b, work.scratch[member])
-            _layers(model, state, work, b, model.dt, reach)
+            _layers(model, state, work, member, b, model.dt, reach)
             if model.blocks[b].sheet == model.tool_sheet:
-                _tool(model, state, work, row, b, model.dt, reach)
+                _tool(model, state, work, member, row, b, model.dt, reach)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
@@ -306,6 +332,8 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         while b < blocks:
             _collect(model, state, work, b)
             _kick(model, state, b, row[DAMPING])
+            if model.sheets[model.blocks[b].sheet].kind != PLY:
+                _pack(model, state, work, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
@@ -318,6 +346,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         while b < blocks:
             if model.sheets[model.blocks[b].sheet].kind == PLY:
                 _drift(model, state, b)
+                _pack(model, state, work, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)

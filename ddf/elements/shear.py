@@ -1,8 +1,8 @@
 """Trellis shear of the lattice ply: one point a cell.
 
 With t1, t2 the means of a cell's opposite edges and  s = sin g = t1.t2 / (|t1||t2|)  the cell of area A
-stores  U = A W(s),  dW/ds = N_s(g) / cos g,  N_s the normalised shear force [N/mm]. The law comes as a
-table of cubics over |s| (see `materials.woven.shear_table`), so that any law costs the same.
+stores  U = A W(s),  dW/ds = N_s(g),  N_s the normalised shear force [N/mm]. The law comes as a table
+of cubics over |s| (see `materials.shear_law.shear_table`), so that any law costs the same.
 
     dU/dt1 = A W'(s) (e2 - s e1)/|t1|,   dU/dt2 = A W'(s) (e1 - s e2)/|t2|
 """

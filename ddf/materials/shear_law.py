@@ -3,9 +3,13 @@
 A law gives N_s(g) [N/mm] over the shear angle g. From a tangent modulus G(g) = sum c_k |g|^k [MPa] and the
 thickness h:  N_s = h sum c_k g^(k+1)/(k+1).
 
-`published` takes the law as entered. Where its slope is negative, homogeneous shear is unstable: it localises
-into bands one element wide. `monotone` is the closest law, in least squares over g, whose slope is nowhere
-below h times a small floor: with M = N_s - floor h g it is the isotonic regression of M.
+A picture frame of side L with F = 2 cos(phi) L N_s, phi = (90 deg - g)/2, opens at L sin(phi) dg/dt, so the
+work per reference area is dW/dg = N_s cos g, and dW/ds = N_s over s = sin g.
+
+`published` takes the law as entered. Where N_s cos g falls, homogeneous shear is unstable: it localises into
+bands one element wide. `monotone` is the closest law, in least squares of M = N_s cos g over g, whose slope
+dM/dg is nowhere below h times a small floor: M - floor h g is an isotonic regression. G then is not below the
+floor either.
 """
 
 from __future__ import annotations
@@ -41,9 +45,16 @@ def table_law(angle_deg: Sequence[float], force_N_mm: Sequence[float], angle: Fl
 
 
 def monotone(angle: FloatArray, force: FloatArray, floor_N_mm: float) -> FloatArray:
-    """Closest curve to `force` over evenly spaced `angle` [rad] whose slope is at least `floor_N_mm` [N/mm]."""
-    tilt = floor_N_mm * angle
-    return isotonic_regression(force - tilt).x + tilt
+    """Closest N_s to `force` over evenly spaced `angle` [rad] with d(N_s cos g)/dg >= `floor_N_mm` [N/mm].
+
+    The regression goes up to 75 deg; beyond, where cos g must turn any finite force down, the law is kept.
+    """
+    inside = angle <= np.deg2rad(75.0)
+    g, cosine = angle[inside], np.cos(angle[inside])
+    tilt = floor_N_mm * g
+    kept = force.copy()
+    kept[inside] = (isotonic_regression(force[inside] * cosine - tilt).x + tilt) / cosine
+    return kept
 
 
 def shear_samples(
@@ -67,14 +78,14 @@ def shear_samples(
 
 
 def shear_table(angle: FloatArray, force: FloatArray) -> FloatArray:
-    """Cubics of dW/ds = N_s / cos g over s = sin g, (INTERVALS + 1, 5), from samples of a law.
+    """Cubics of dW/ds = N_s over s = sin g, (INTERVALS + 1, 5), from samples of a law.
 
     Row k holds c0 .. c3 of c0 + c1 u + c2 u^2 + c3 u^3, u = s/width - k, and W at its start [N/mm]; the last
     row holds the width of an interval.
     """
     s = np.linspace(0.0, LARGEST_SINE, INTERVALS + 1)
     g = np.arcsin(s)
-    slope = PchipInterpolator(s, PchipInterpolator(angle, force)(g) / np.cos(g))
+    slope = PchipInterpolator(s, PchipInterpolator(angle, force)(g))
     width = s[1]
     table = np.zeros((INTERVALS + 1, 5))
     for k in range(4):
@@ -85,6 +96,6 @@ def shear_table(angle: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def largest_tangent(angle: FloatArray, force: FloatArray, up_to_deg: float = 60.0) -> float:
-    """Largest slope |dN_s/dg| [N/mm] up to an angle: what the step must resolve."""
+    """Largest slope |dN_s/dg| [N/mm] up to an angle, at least that of N_s cos g: what the step must resolve."""
     inside = angle <= np.deg2rad(up_to_deg)
     return float(np.max(np.abs(np.gradient(force[inside], angle[inside]))))

@@ -151,7 +151,7 @@ def _sheet(scene: Scene, state: State, k: int) -> SheetSnapshot:
 
 
 def ply_fields(surface: PlySurface, shear_table: Array) -> dict[str, Array]:
-    """Cell fields of a ply, (n-1, m-1): shear angle, normalised shear force N_s = dW/ds cos g, fibre strains."""
+    """Cell fields of a ply, (n-1, m-1): shear angle, normalised shear force N_s = dW/ds, fibre strains."""
     angle = shear_angle(surface)
     first, second = fibre_strain(surface)
     outside = surface.cell_fraction <= 0
@@ -165,14 +165,14 @@ def ply_fields(surface: PlySurface, shear_table: Array) -> dict[str, Array]:
 
 
 def shear_force(angle: Array, table: Array) -> Array:
-    """Normalised shear force N_s(g) = dW/ds cos g [N/mm] of angles g [rad], from a solver's shear table."""
+    """Normalised shear force N_s(g) = dW/ds [N/mm] of angles g [rad], from a solver's shear table."""
     s = np.sin(angle)
     width = table[-1, 0]
     k = np.minimum((np.abs(s) / width).astype(np.int64), len(table) - 2)
     u = np.abs(s) / width - k
     c = table[k]
     slope = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
-    return np.asarray(np.sign(s) * slope * np.cos(angle))
+    return np.asarray(np.sign(s) * slope)
 
 
 def diaphragm_fields(scene: Scene, x: Array, k: int) -> dict[str, Array]:
