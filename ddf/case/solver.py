@@ -39,12 +39,12 @@ class Solver(Section):
         description="Fibre tension per width that the step is made stable for [N/mm]: it acts like a string's.",
     )
     contact_stiffness_N_mm3: float = Field(
-        default=2.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
+        default=1.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
         default=4.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
-    contact_damping: float = Field(default=0.33, ge=0, le=2, description="Contact damping, fraction of critical.")
+    contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
     threads: int | None = Field(
         default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
     )
