@@ -15,6 +15,7 @@ from ddf.contact.layers import UNKNOWN
 from ddf.contact.patch import patch_centres
 from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
+from ddf.elements.bending import tangent_weights
 from ddf.loads.path import LoadPath
 from ddf.materials import ogden, shear_law
 from ddf.mesh.diaphragm import DiaphragmMesh, mesh_diaphragm
@@ -262,7 +263,7 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
     """Node pools of the model: masses, areas, bars, cells, triples, spans."""
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
-    spans, firsts, centres, first = [], [], [], 0
+    spans, firsts, centres, weights, first = [], [], [], [], 0
     for k, s in enumerate(sheets):
         n, m = int(s["rows"]), int(s["cols"])
         zero = np.zeros((n, m))
@@ -286,11 +287,13 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
             parts[name].append(values[name].ravel())
         spans.append(span)
         centres.append(patch_centres(exists).ravel())
+        weights.append(tangent_weights(values["bar1"], values["bar2"]).ravel())
         firsts.append(first)
         first += n
     pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
     pools["row_span"] = np.ascontiguousarray(np.concatenate(spans).astype(np.int64))
     pools["centre"] = np.concatenate(centres)
+    pools["weight"] = np.concatenate(weights)
     pools["row_first"] = np.array(firsts, dtype=np.int64)
     return pools
 

@@ -108,6 +108,7 @@ class Model(NamedTuple):
     cell: np.ndarray  # (N,) reference area of a cell [mm2]
     triple1: np.ndarray  # (N,) area of the bending triple centred on a node, along family 1 [mm2]
     triple2: np.ndarray
+    weight: np.ndarray  # (4 N,) weights of the bars around a node in its tangents, see `bending.tangent_weights`
     lines: np.ndarray  # reference sizes of diaphragm cells: rows then cols [mm]
     shear_tables: np.ndarray  # (laws, intervals, 5)
     ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
@@ -151,6 +152,13 @@ def scalars(pool, sheet):
     """Sheet's slice of a scalar pool as (rows, cols)."""
     n = sheet.rows * sheet.cols
     return pool[sheet.node : sheet.node + n].reshape((sheet.rows, sheet.cols))
+
+
+@njit(inline="always")
+def fours(pool, sheet):
+    """Sheet's slice of a pool of four numbers a node as (4, rows, cols)."""
+    n = sheet.rows * sheet.cols
+    return pool[4 * sheet.node : 4 * (sheet.node + n)].reshape((4, sheet.rows, sheet.cols))
 
 
 def sheet_vectors(model: Model, pool: np.ndarray, k: int) -> np.ndarray:

@@ -8,6 +8,7 @@ from numba import njit
 from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance
 from ddf.dynamics.team import Team
+from ddf.elements import bending, shear
 from ddf.elements.rubber import cone_volume
 from ddf.elements.tension import FAST, LINES
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
@@ -47,7 +48,8 @@ def make_work(model: Model, members: int) -> Work:
     bottom = model.sheets[0]
     cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1)
     return Work(
-        scratch=np.zeros((members, SCRATCH_ROWS * widest)), packed=np.zeros(4 * model.mass.size),
+        scratch=np.zeros((members, max(SCRATCH_ROWS * widest, bending.SCRATCH, shear.SCRATCH))),
+        packed=np.zeros(4 * model.mass.size),
         buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
         chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, 3, widest)),
         sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8),

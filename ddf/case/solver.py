@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 
-DEFAULT_MASS_SCALING = 5.0
+DEFAULT_MASS_SCALING = 20.0
 
 
 class Solver(Section):
@@ -18,7 +18,7 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass (inferred); left out without target_step_s: 5. "
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 20. "
         "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
@@ -33,7 +33,7 @@ class Solver(Section):
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
     fibre_tension_allowed_N_mm: float = Field(
-        default=5.0,
+        default=30.0,
         ge=0,
         le=1e4,
         description="Fibre tension per width that the step is made stable for [N/mm]: it acts like a string's.",

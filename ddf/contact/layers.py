@@ -1,11 +1,12 @@
 """Contact of neighbouring sheets: slave nodes against the smooth surface of a master sheet.
 
-A slave node keeps its place (u, v) on the master's grid; one Newton step of the closest-point projection a
-step tracks it. With N_k the weights of the surface's nodes there (`patch.py`), tangents S_1, S_2, normal n,
+A slave node keeps its place (u, v) on the master's grid; one step of the closest-point projection a time step
+tracks it, with the metric stiffened by |d n.S_aa|: in a fold as tight as the sheet is thick, where Newton's
+step would overshoot or have no answer, places then creep instead of jumping about. With N_k the weights of the surface's nodes there (`patch.py`), tangents S_1, S_2, normal n,
 r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
-    place  r^a = contravariant components of r (metric of S_1, S_2): the Newton step
+    r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
     slip   s = (place - anchor)^a S_a;        friction spring of stiffness 0.3 K A, Coulomb limit mu N
     rates  of gap and slip are their changes since the last step over dt, so they turn with the master
 
@@ -45,7 +46,7 @@ NOWHERE = np.int64(2**40)  # first column of an empty span
 CHUNK = 64
 """Awake nodes that go through the passes together."""
 
-ONE, TWO, FOUR = np.uint64(1), np.uint64(2), np.uint64(4)
+ONE, TWO, THREE, FOUR = np.uint64(1), np.uint64(2), np.uint64(3), np.uint64(4)
 STRIDE = np.uint64(4 * CHUNK)
 # fields of a chunk: where each begins in `w`
 (
@@ -66,7 +67,7 @@ def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.
     """Scratch of the passes, one row a member of the team."""
     return (
         np.zeros((members, FIELDS * CHUNK)),
-        np.zeros((members, 12 * CHUNK)),
+        np.zeros((members, 20 * CHUNK)),
         np.zeros((members, 3, CHUNK), np.int64),
         np.zeros((members, CHUNK), np.uint64),
     )
@@ -160,10 +161,12 @@ def _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols):
         w[LAST + t], w[OLD_RATE + t], w[AREA + t] = place[2, node], place[3, node], area[node]
         w[AU + t], w[AV + t] = anchor[0, node], anchor[1, node]
         a, b = weights(w[TU + t]), weights(w[TV + t])
-        s, su, sv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
+        s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
         store(surface, FOUR * t, s)
         store(surface, FOUR * t + STRIDE, su)
-        store(surface, FOUR * t + STRIDE + STRIDE, sv)
+        store(surface, FOUR * t + TWO * STRIDE, sv)
+        store(surface, FOUR * t + THREE * STRIDE, suu)
+        store(surface, FOUR * t + FOUR * STRIDE, svv)
 
 
 @njit(**FAST)
@@ -191,10 +194,17 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         il = np.sqrt(inv)
         nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
         d = rx * nx + ry * ny + rz * nz
+        p, q = k + THREE * STRIDE, k + FOUR * STRIDE
+        bu = abs(d * (nx * surface[p] + ny * surface[p + ONE] + nz * surface[p + TWO]))
+        bv = abs(d * (nx * surface[q] + ny * surface[q + ONE] + nz * surface[q + TWO]))
+        auu, avv = guu + bu, gvv + bv
+        step = 1.0 / (auu * avv - guv * guv + 1e-30)
+        su = min(max((avv * ru - guv * rv) * step, -0.5), 0.5)
+        sv = min(max((auu * rv - guv * ru) * step, -0.5), 0.5)
         w[DU + t] = du
         w[DV + t] = dv
-        w[U + t] = min(max(w[U0 + t] + du, -1.0), end_u)
-        w[V + t] = min(max(w[V0 + t] + dv, -1.0), end_v)
+        w[U + t] = min(max(w[U0 + t] + su, -1.0), end_u)
+        w[V + t] = min(max(w[V0 + t] + sv, -1.0), end_v)
         w[NX + t] = nx
         w[NY + t] = ny
         w[NZ + t] = nz
@@ -218,7 +228,8 @@ def _settle(w, nodes, count, place, anchor, rest, cell, deepest, inverse_reach):
         place[2, node] = gap
         place[3, node] = 0.0
         touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
-        if touches and cell[np.uint64(np.int64(u)), np.uint64(np.int64(v))] > 0.0:
+        i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
+        if touches and cell[np.uint64(i), np.uint64(j)] > 0.0:
             touching += 1
             continue
         w[AREA + t] = 0.0
@@ -246,9 +257,9 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         rate = (gap - last) * inverse_dt if last < UNKNOWN else 0.0
         fn = max(0.0, -k * gap - c * rate)
         old_u, old_v, u, v = w[AU + t], w[AV + t], w[U + t], w[V + t]
-        au, av = w[U0 + t] - old_u, w[V0 + t] - old_v
-        tu, tv = au + du, av + dv
-        mx, my, mz = du * ux + dv * vx, du * uy + dv * vy, du * uz + dv * vz
+        tu, tv = u - old_u, v - old_v
+        su, sv = u - w[U0 + t], v - w[V0 + t]
+        mx, my, mz = su * ux + sv * vx, su * uy + sv * vy, su * uz + sv * vz
         px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
         kt, cs = TANGENTIAL * k, TANGENTIAL * c * inverse_dt
         tx, ty, tz = -kt * px - cs * mx, -kt * py - cs * my, -kt * pz - cs * mz

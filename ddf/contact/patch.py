@@ -38,21 +38,27 @@ def _mix(b0, b1, b2, y0, y1, y2):
 
 @njit(**FAST)
 def _along_row(y, k, b):
-    """One row of a patch: value and derivative along v; k: where its first node begins in y."""
+    """One row of a patch: value, first and second derivative along v; k: where its first node begins in y."""
     y0, y1, y2 = load(y, k), load(y, k + FOUR), load(y, k + EIGHT)
-    return _mix(b[0], b[1], b[2], y0, y1, y2), _mix(b[3], b[4], b[5], y0, y1, y2)
+    return _mix(b[0], b[1], b[2], y0, y1, y2), _mix(b[3], b[4], b[5], y0, y1, y2), _mix(1.0, -2.0, 1.0, y0, y1, y2)
 
 
 @njit(**FAST)
 def interpolate(y, k, stride, a, b):
-    """The place on the surface and its derivatives along u and v, as quads.
+    """The place on the surface, S_1, S_2, S_11 and S_22 there, as quads.
 
     y: the nodes (4 N M,); k: where the patch's first node begins, stride: from row to row; a, b from `weights`.
     """
-    r0, s0 = _along_row(y, k, b)
-    r1, s1 = _along_row(y, k + stride, b)
-    r2, s2 = _along_row(y, k + stride + stride, b)
-    return _mix(a[0], a[1], a[2], r0, r1, r2), _mix(a[3], a[4], a[5], r0, r1, r2), _mix(a[0], a[1], a[2], s0, s1, s2)
+    r0, s0, c0 = _along_row(y, k, b)
+    r1, s1, c1 = _along_row(y, k + stride, b)
+    r2, s2, c2 = _along_row(y, k + stride + stride, b)
+    return (
+        _mix(a[0], a[1], a[2], r0, r1, r2),
+        _mix(a[3], a[4], a[5], r0, r1, r2),
+        _mix(a[0], a[1], a[2], s0, s1, s2),
+        _mix(1.0, -2.0, 1.0, r0, r1, r2),
+        _mix(a[0], a[1], a[2], c0, c1, c2),
+    )
 
 
 @njit(**FAST)

@@ -48,6 +48,7 @@ from ddf.model import (
     TOOL_TANGENTIAL_SPRING,
     TOOL_WORK,
     TOOL_Z,
+    fours,
     scalars,
     vectors,
 )
@@ -83,10 +84,9 @@ def _internal(model, state, row, b, scratch):
     w = scratch[: SCRATCH_ROWS * (sheet.cols + 2)].reshape((SCRATCH_ROWS, sheet.cols + 2))
     f[:, low:high] = 0.0
     if sheet.kind == PLY:
-        bar1, bar2, cell = scalars(model.bar1, sheet), scalars(model.bar2, sheet), scalars(model.cell, sheet)
-        shear_forces(x, f, cell, model.shear_tables[sheet.shear], low, high, w)
+        shear_forces(x, f, scalars(model.cell, sheet), model.shear_tables[sheet.shear], low, high, scratch)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
-        bending_forces(x, f, bar1, bar2, triple1, triple2, sheet, low, high, w)
+        bending_forces(x, f, fours(model.weight, sheet), triple1, triple2, sheet, low, high, scratch)
     else:
         dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]

@@ -19,154 +19,142 @@ from numba import njit
 from ddf.elements.tension import FAST
 
 
-@njit(**FAST)
-def _differences(xm, x0, xp, wm, wp, c1, t1):
-    """Second difference and weighted tangent along family 1, one component of one row of nodes."""
-    for j in range(x0.shape[0]):
-        a = x0[j] - xm[j]
-        b = xp[j] - x0[j]
-        c1[j] = b - a
-        t1[j] = wm[j] * a + wp[j] * b
+TILE = 128
+"""Nodes of a row that go through the passes together: their scratch stays in the first cache."""
+
+# scratch of a tile: five shares of three components, entry j + 1 belongs to node j of the tile
+WIDTH = TILE + 2
+OWN, UP, DOWN, RIGHT, LEFT = (np.uint64(3 * k * WIDTH) for k in range(5))
+NONE, ONE, Y = np.uint64(0), np.uint64(1), np.uint64(WIDTH)
+SCRATCH = 15 * WIDTH
 
 
 @njit(**FAST)
-def _differences_along(x0, wm, wp, c2, t2):
-    """The same along family 2, within the row; the end nodes have one neighbour only."""
-    m = x0.shape[0]
-    for j in range(1, m - 1):
-        a = x0[j] - x0[j - 1]
-        b = x0[j + 1] - x0[j]
-        c2[j] = b - a
-        t2[j] = wm[j] * a + wp[j] * b
-    c2[0] = 0.0
-    c2[m - 1] = 0.0
-    t2[0] = wp[0] * (x0[1] - x0[0])
-    t2[m - 1] = wm[m - 1] * (x0[m - 1] - x0[m - 2])
+def _shares(x, weight, triple1, triple2, i, im, ip, start, before, after, offset, count, k, w):
+    """What the energy of `count` nodes of row i from column `start` on pulls on them and their four neighbours.
+
+    im, ip: the rows before and after, row i itself where there is none; before, after: 1, or 0 where the column
+    before or after does not exist. At such edges triples have no area and weights are 0. offset: first
+    node's place in the tile.
+    """
+    k1, k2, r1, r2 = k
+    for t in range(count):
+        j = start + t
+        o = t + offset + ONE
+        jm, jp = j - before, j + after
+        wm1, wp1, wm2, wp2 = weight[0, i, j], weight[1, i, j], weight[2, i, j], weight[3, i, j]
+        area1, area2 = triple1[i, j], triple2[i, j]
+        x0, y0, z0 = x[0, i, j], x[1, i, j], x[2, i, j]
+        ax, ay, az = x0 - x[0, im, j], y0 - x[1, im, j], z0 - x[2, im, j]
+        bx, by, bz = x[0, ip, j] - x0, x[1, ip, j] - y0, x[2, ip, j] - z0
+        c1x, c1y, c1z = bx - ax, by - ay, bz - az
+        t1x, t1y, t1z = wm1 * ax + wp1 * bx, wm1 * ay + wp1 * by, wm1 * az + wp1 * bz
+        ax, ay, az = x0 - x[0, i, jm], y0 - x[1, i, jm], z0 - x[2, i, jm]
+        bx, by, bz = x[0, i, jp] - x0, x[1, i, jp] - y0, x[2, i, jp] - z0
+        c2x, c2y, c2z = bx - ax, by - ay, bz - az
+        t2x, t2y, t2z = wm2 * ax + wp2 * bx, wm2 * ay + wp2 * by, wm2 * az + wp2 * bz
+        nx, ny, nz = t1y * t2z - t1z * t2y, t1z * t2x - t1x * t2z, t1x * t2y - t1y * t2x
+        inv = 1.0 / np.sqrt(nx * nx + ny * ny + nz * nz + 1e-30)
+        nx, ny, nz = nx * inv, ny * inv, nz * inv
+        a, b = c1x * nx + c1y * ny + c1z * nz, c2x * nx + c2y * ny + c2z * nz
+        s1, s2 = k1 * area1 * a, k2 * area2 * b
+        s = s1 * a + s2 * b
+        px = (s1 * c1x + s2 * c2x - s * nx) * inv
+        py = (s1 * c1y + s2 * c2y - s * ny) * inv
+        pz = (s1 * c1z + s2 * c2z - s * nz) * inv
+        e1, e2 = r1 * area1, r2 * area2
+        dw1, dw2 = wm1 - wp1, wm2 - wp2
+        q1, q2 = t2y * pz - t2z * py, py * t1z - pz * t1y
+        f1, f2 = s1 * nx + e1 * c1x, s2 * nx + e2 * c2x
+        w[OWN + o] = 2.0 * (f1 + f2) - dw1 * q1 - dw2 * q2
+        w[UP + o], w[DOWN + o] = -f1 - wp1 * q1, wm1 * q1 - f1
+        w[RIGHT + o], w[LEFT + o] = -f2 - wp2 * q2, wm2 * q2 - f2
+        q1, q2 = t2z * px - t2x * pz, pz * t1x - px * t1z
+        f1, f2 = s1 * ny + e1 * c1y, s2 * ny + e2 * c2y
+        o += Y
+        w[OWN + o] = 2.0 * (f1 + f2) - dw1 * q1 - dw2 * q2
+        w[UP + o], w[DOWN + o] = -f1 - wp1 * q1, wm1 * q1 - f1
+        w[RIGHT + o], w[LEFT + o] = -f2 - wp2 * q2, wm2 * q2 - f2
+        q1, q2 = t2x * py - t2y * px, px * t1y - py * t1x
+        f1, f2 = s1 * nz + e1 * c1z, s2 * nz + e2 * c2z
+        o += Y
+        w[OWN + o] = 2.0 * (f1 + f2) - dw1 * q1 - dw2 * q2
+        w[UP + o], w[DOWN + o] = -f1 - wp1 * q1, wm1 * q1 - f1
+        w[RIGHT + o], w[LEFT + o] = -f2 - wp2 * q2, wm2 * q2 - f2
 
 
 @njit(**FAST)
-def _normals(ax, ay, az, bx, by, bz, nx, ny, nz, inv):
-    """Unit normals of t1 x t2 and the inverse length."""
-    for j in range(inv.shape[0]):
-        x = ay[j] * bz[j] - az[j] * by[j]
-        y = az[j] * bx[j] - ax[j] * bz[j]
-        z = ax[j] * by[j] - ay[j] * bx[j]
-        r = 1.0 / np.sqrt(x * x + y * y + z * z + 1e-30)
-        nx[j] = x * r
-        ny[j] = y * r
-        nz[j] = z * r
-        inv[j] = r
+def _tile(x, weight, triple1, triple2, i, im, ip, start, count, k, w):
+    """Shares of the nodes of a tile; the first and the last of the row, which lack a neighbour, by themselves."""
+    head = ONE if start == NONE else NONE
+    tail = ONE if start + count == np.uint64(x.shape[2]) else NONE
+    _shares(x, weight, triple1, triple2, i, im, ip, start, NONE, ONE, NONE, head, k, w)
+    _shares(x, weight, triple1, triple2, i, im, ip, start + head, ONE, ONE, head, count - head - tail, k, w)
+    last = count - tail
+    _shares(x, weight, triple1, triple2, i, im, ip, start + last, ONE, NONE, last, tail, k, w)
 
 
 @njit(**FAST)
-def _moments(c1, c2, nx, ny, nz, inv, area1, area2, k1, k2, s1, s2, px, py, pz):
-    """K1, K2 per node into s1, s2 and p into (px, py, pz); c1, c2 are (3, m)."""
-    x1, y1, z1 = c1[0], c1[1], c1[2]
-    x2, y2, z2 = c2[0], c2[1], c2[2]
-    for j in range(inv.shape[0]):
-        a = x1[j] * nx[j] + y1[j] * ny[j] + z1[j] * nz[j]
-        b = x2[j] * nx[j] + y2[j] * ny[j] + z2[j] * nz[j]
-        ka = k1 * area1[j] * a
-        kb = k2 * area2[j] * b
-        s1[j] = ka
-        s2[j] = kb
-        t = ka * a + kb * b
-        px[j] = (ka * x1[j] + kb * x2[j] - t * nx[j]) * inv[j]
-        py[j] = (ka * y1[j] + kb * y2[j] - t * ny[j]) * inv[j]
-        pz[j] = (ka * z1[j] + kb * z2[j] - t * nz[j]) * inv[j]
+def _add(f, c, i, start, count, w, field):
+    """Add one kind of share to columns start .. of row i of component c."""
+    o = field + np.uint64(c) * Y + ONE
+    for t in range(count):
+        f[c, i, start + t] += w[o + t]
 
 
 @njit(**FAST)
-def _shares(n, c1, c2, s1, s2, area1, area2, r1, r2, q1, q2, wm1, wp1, wm2, wp2, own, up, down, left, right):
-    """What a node's energy pulls on itself and its four neighbours, one component; q = dU/dt."""
-    for j in range(n.shape[0]):
-        p1 = s1[j] * n[j] + r1 * area1[j] * c1[j]
-        p2 = s2[j] * n[j] + r2 * area2[j] * c2[j]
-        own[j] = 2.0 * (p1 + p2) - (wm1[j] - wp1[j]) * q1[j] - (wm2[j] - wp2[j]) * q2[j]
-        up[j] = -p1 - wp1[j] * q1[j]
-        down[j] = -p1 + wm1[j] * q1[j]
-        right[j] = -p2 - wp2[j] * q2[j]
-        left[j] = -p2 + wm2[j] * q2[j]
+def _add_row(f, c, i, start, count, w):
+    """Add a tile's own shares and those of the left and right neighbours, from column start-1 to start+count."""
+    o = np.uint64(c) * Y
+    for kind in (OWN, LEFT, RIGHT):
+        w[kind + o] = 0.0
+        w[kind + o + count + ONE] = 0.0
+    own, left, right = OWN + o, LEFT + o, RIGHT + o
+    f[c, i, start] += w[own + ONE] + w[left + ONE + ONE]
+    for t in range(ONE, count):
+        f[c, i, start + t] += w[own + ONE + t] + w[right + t] + w[left + t + ONE + ONE]
+    if start > np.uint64(0):
+        f[c, i, start - ONE] += w[left + ONE]
+    if start + count < np.uint64(f.shape[2]):
+        f[c, i, start + count] += w[right + count]
 
 
 @njit(**FAST)
-def _cross(ax, ay, bz, by, out):
-    """One component of a cross product."""
-    for j in range(out.shape[0]):
-        out[j] = ax[j] * bz[j] - ay[j] * by[j]
-
-
-@njit(**FAST)
-def _add(f, own, right, left, up, down):
-    """Gather: own share, from the left and right neighbours (padded by one), from the rows below and above."""
-    for j in range(f.shape[0]):
-        f[j] += own[j] + right[j] + left[j + 2] + up[j] + down[j]
-
-
-@njit(**FAST)
-def _row(x, bar1, bar2, triple1, triple2, i, k, w, out):
-    """Shares of the nodes of row i into out (3 components x 5 kinds, m + 2), kinds own, up, down, right, left."""
-    m = x.shape[2]
-    n = x.shape[1]
-    im, ip = max(i - 1, 0), min(i + 1, n - 1)
-    wm1, wp1, wm2, wp2 = w[0, :m], w[1, :m], w[2, :m], w[3, :m]
-    for j in range(m):
-        a = 1.0 if i > 0 and bar1[im, j] > 0.0 else 0.0
-        b = 1.0 if bar1[i, j] > 0.0 else 0.0
-        t = 1.0 / max(a + b, 1.0)
-        wm1[j] = a * t
-        wp1[j] = b * t
-        a = 1.0 if j > 0 and bar2[i, max(j - 1, 0)] > 0.0 else 0.0
-        b = 1.0 if bar2[i, j] > 0.0 else 0.0
-        t = 1.0 / max(a + b, 1.0)
-        wm2[j] = a * t
-        wp2[j] = b * t
-    c1, c2, t1, t2 = w[4:7], w[7:10], w[10:13], w[13:16]
-    for c in range(3):
-        _differences(x[c, im], x[c, i], x[c, ip], wm1, wp1, c1[c], t1[c])
-        _differences_along(x[c, i], wm2, wp2, c2[c], t2[c])
-    normal, inv, s1, s2 = w[16:19], w[19, :m], w[20, :m], w[21, :m]
-    p, q1, q2 = w[22:25], w[25, :m], w[26, :m]
-    _normals(t1[0], t1[1], t1[2], t2[0], t2[1], t2[2], normal[0], normal[1], normal[2], inv)
-    _moments(c1, c2, normal[0], normal[1], normal[2], inv, triple1[i], triple2[i], k[0], k[1], s1, s2, p[0], p[1], p[2])
-    for c in range(3):
-        d, e = (c + 1) % 3, (c + 2) % 3
-        _cross(t2[d], t2[e], p[e], p[d], q1)
-        _cross(p[d], p[e], t1[e], t1[d], q2)
-        o = 5 * c
-        _shares(
-            normal[c, :m], c1[c], c2[c], s1, s2, triple1[i], triple2[i], k[2], k[3], q1, q2, wm1, wp1, wm2, wp2,
-            out[o, :m], out[o + 1, :m], out[o + 2, :m], out[o + 4, 1 : m + 1], out[o + 3, 1 : m + 1],
-        )  # fmt: skip
-
-
-@njit(**FAST)
-def bending_forces(x, f, bar1, bar2, triple1, triple2, sheet, low, high, work):
+def bending_forces(x, f, weight, triple1, triple2, sheet, low, high, work):
     """Add -dU/dx of bending to rows low..high-1 of f.
 
-    x, f (3, n, m); bar1, bar2, triple1, triple2 (n, m); work (3, 15, m + 2) and 27 more rows: (72, m + 2).
+    x, f (3, n, m); weight (4, n, m) from `tangent_weights`; triple1, triple2 (n, m); work: at least SCRATCH
+    numbers, flat.
     """
     n, m = x.shape[1], x.shape[2]
     k = (
         (sheet.bend1 - sheet.bend_in_plane) / sheet.a1**4, (sheet.bend2 - sheet.bend_in_plane) / sheet.a2**4,
         sheet.bend_in_plane / sheet.a1**4, sheet.bend_in_plane / sheet.a2**4,
     )  # fmt: skip
-    work[:] = 0.0
-    w = work[45:72]
-    for i in range(low - 1, high + 1):
-        out = work[15 * ((i + 3) % 3) : 15 * ((i + 3) % 3) + 15]
-        if 0 <= i < n:
-            _row(x, bar1, bar2, triple1, triple2, i, k, w, out)
-        else:
-            out[:] = 0.0
-        if i > low:  # row i-1 has all its neighbours now
-            a, b = 15 * ((i + 1) % 3), 15 * ((i + 2) % 3)
+    for i in range(max(low - 1, 0), min(high + 1, n)):
+        row = np.uint64(i)
+        im, ip = np.uint64(max(i - 1, 0)), np.uint64(min(i + 1, n - 1))
+        for first in range(0, m, TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, m - first))
+            _tile(x, weight, triple1, triple2, row, im, ip, start, count, k, work)
             for c in range(3):
-                o = 5 * c
-                _add(
-                    f[c, i - 1], work[b + o, :m], work[b + o + 3], work[b + o + 4],
-                    work[a + o + 1, :m], out[o + 2, :m],
-                )  # fmt: skip
+                if low <= i < high:
+                    _add_row(f, c, row, start, count, work)
+                if low <= i + 1 < high:
+                    _add(f, c, ip, start, count, work, UP)
+                if low <= i - 1 < high:
+                    _add(f, c, im, start, count, work, DOWN)
+
+
+def tangent_weights(bar1: np.ndarray, bar2: np.ndarray) -> np.ndarray:
+    """Weights (4, n, m) of the bars before and after a node in its tangents along family 1, then family 2."""
+    parts = []
+    for axis, bar in ((0, bar1), (1, bar2)):
+        after = np.moveaxis(bar, axis, 0) > 0
+        before = np.concatenate([np.zeros_like(after[:1]), after[:-1]])
+        count = np.maximum(before.astype(float) + after, 1.0)
+        parts += [np.moveaxis(before / count, 0, axis), np.moveaxis(after / count, 0, axis)]
+    return np.ascontiguousarray(parts)
 
 
 def node_curvatures(

@@ -15,92 +15,110 @@ from numba import njit
 from ddf.elements.tension import FAST
 
 
-@njit(**FAST)
-def _tangents(xa, xb, t1, t2):
-    """Means of opposite edges of a row of cells, one component: xa row i, xb row i+1."""
-    for j in range(t1.shape[0]):
-        p = xb[j + 1] - xa[j]
-        q = xb[j] - xa[j + 1]
-        t1[j] = 0.5 * (p + q)
-        t2[j] = 0.5 * (p - q)
+TILE = 128
+"""Cells of a row that go through the passes together: their scratch stays in the first cache."""
+
+# scratch of a tile: fields of `w`; fields of `g`, whose entry t + 1 is cell t between two empty cells
+WIDTH = TILE + 2
+R1, R2, S, INTERVAL, PART, SLOPE = (np.uint64(k * TILE) for k in range(6))
+PLUS, MINUS = np.uint64(0), np.uint64(3 * WIDTH)
+ONE, NEXT = np.uint64(1), np.uint64(WIDTH)
+SCRATCH = 6 * TILE + 6 * WIDTH
 
 
 @njit(**FAST)
-def _sines(t1x, t1y, t1z, t2x, t2y, t2z, r1, r2, s):
-    """Inverse lengths of the tangents and the sine of the shear angle."""
-    for j in range(s.shape[0]):
-        a = 1.0 / np.sqrt(t1x[j] * t1x[j] + t1y[j] * t1y[j] + t1z[j] * t1z[j])
-        b = 1.0 / np.sqrt(t2x[j] * t2x[j] + t2y[j] * t2y[j] + t2z[j] * t2z[j])
-        r1[j] = a
-        r2[j] = b
-        s[j] = (t1x[j] * t2x[j] + t1y[j] * t2y[j] + t1z[j] * t2z[j]) * a * b
+def _tangents(x, c, i, j):
+    """Means of opposite edges of a cell, one component."""
+    p, q = x[c, i + ONE, j + ONE] - x[c, i, j], x[c, i + ONE, j] - x[c, i, j + ONE]
+    return 0.5 * (p + q), 0.5 * (p - q)
 
 
 @njit(**FAST)
-def _slopes(s, cell, table, slope):
-    """Slope = A dW/ds from the table; beyond its end the last cubic goes on."""
-    last = table.shape[0] - 2
-    step = 1.0 / table[table.shape[0] - 1, 0]  # the last row holds the width of an interval
-    for j in range(s.shape[0]):
-        z = abs(s[j]) * step
-        k = min(int(z), last)
-        u = z - k
-        c = table[k]
-        w = c[0] + u * (c[1] + u * (c[2] + u * c[3]))
-        slope[j] = cell[j] * (w if s[j] >= 0.0 else -w)
+def _sines(x, i, start, count, step, last, w):
+    """Inverse lengths of the tangents, sine of the shear angle, its interval in the table and the place in it.
 
-
-@njit(**FAST)
-def _pull(t1, t2, r1, r2, s, slope, plus, minus):
-    """Plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of one component, G = -dU/dt."""
-    for j in range(s.shape[0]):
-        e1 = t1[j] * r1[j]
-        e2 = t2[j] * r2[j]
-        g1 = -slope[j] * (e2 - s[j] * e1) * r1[j]
-        g2 = -slope[j] * (e1 - s[j] * e2) * r2[j]
-        plus[j] = 0.5 * (g1 + g2)
-        minus[j] = 0.5 * (g1 - g2)
-
-
-@njit(**FAST)
-def _gather(f, plus0, minus0, plus1, minus1):
-    """Add to a row of nodes from the cells below (0: row i-1) and above (1: row i); one component.
-
-    The cell buffers start with an empty cell, so that entry j is the cell left of node j.
+    step: intervals a unit of the sine; last: the last interval, whose cubic goes on.
     """
-    for j in range(f.shape[0]):
-        f[j] += plus0[j] + minus0[j + 1] - minus1[j] - plus1[j + 1]
+    for t in range(count):
+        ax, bx = _tangents(x, 0, i, start + t)
+        ay, by = _tangents(x, 1, i, start + t)
+        az, bz = _tangents(x, 2, i, start + t)
+        a = 1.0 / np.sqrt(ax * ax + ay * ay + az * az)
+        b = 1.0 / np.sqrt(bx * bx + by * by + bz * bz)
+        s = (ax * bx + ay * by + az * bz) * a * b
+        z = abs(s) * step
+        k = min(np.floor(z), last)
+        w[R1 + t] = a
+        w[R2 + t] = b
+        w[S + t] = s
+        w[INTERVAL + t] = k
+        w[PART + t] = z - k
+
+
+@njit(**FAST)
+def _slopes(table, last, count, w):
+    """|dW/ds| from the table; an interval that is no number (a broken run) reads the first row."""
+    for t in range(count):
+        k = np.uint64(min(max(int(w[INTERVAL + t]), 0), last))
+        u = w[PART + t]
+        w[SLOPE + t] = table[k, 0] + u * (table[k, 1] + u * (table[k, 2] + u * table[k, 3]))
+
+
+@njit(**FAST)
+def _pull(x, cell, i, start, count, w, g):
+    """plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of all components, G = -dU/dt."""
+    for t in range(count):
+        r1, r2, s, slope = w[R1 + t], w[R2 + t], w[S + t], -0.5 * w[SLOPE + t] * cell[i, start + t]
+        slope = slope if s >= 0.0 else -slope
+        a11, a22, a12 = slope * s * r1 * r1, slope * s * r2 * r2, slope * r1 * r2
+        a, b = _tangents(x, 0, i, start + t)
+        g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
+        o = t + ONE
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+        a, b = _tangents(x, 1, i, start + t)
+        g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
+        o += NEXT
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+        a, b = _tangents(x, 2, i, start + t)
+        g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
+        o += NEXT
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+
+
+@njit(**FAST)
+def _add(f, i, start, count, g, sign, right, left):
+    """Add a tile's forces to a row of nodes: `right` from the cell to its right, `left` from that to its left."""
+    for c in range(3):
+        o = np.uint64(c) * NEXT
+        p, q = right + o + ONE, left + o
+        g[q] = 0.0
+        g[p + count] = 0.0
+        for t in range(count + ONE):
+            f[c, i, start + t] += sign * (g[p + t] + g[q + t])
 
 
 @njit(**FAST)
 def shear_forces(x, f, cell, table, low, high, work):
     """Add -dU/dx of trellis shear to rows low..high-1 of f.
 
-    x, f (3, n, m) [mm], [N]; cell (n, m) area of existing cells [mm2]; table (K, 5); work (21, m + 2).
+    x, f (3, n, m) [mm], [N]; cell (n, m) area of existing cells [mm2]; table (K, 5); work: at least SCRATCH
+    numbers, flat.
     """
     n, m = x.shape[1], x.shape[2]
-    c = m - 1
-    work[:] = 0.0
-    for i in range(low - 1, high):
-        old = 9 if i & 1 else 15
-        new = 24 - old
-        if 0 <= i < n - 1:
-            for k in range(3):
-                _tangents(x[k, i], x[k, i + 1], work[k, :c], work[3 + k, :c])
-            r1, r2, s = work[6, :c], work[7, :c], work[8, :c]
-            _sines(work[0, :c], work[1, :c], work[2, :c], work[3, :c], work[4, :c], work[5, :c], r1, r2, s)
-            slope = work[21, :c]
-            _slopes(s, cell[i, :c], table, slope)
-            for k in range(3):
-                _pull(
-                    work[k, :c], work[3 + k, :c], r1, r2, s, slope,
-                    work[new + k, 1 : c + 1], work[new + 3 + k, 1 : c + 1],
-                )  # fmt: skip
-        else:
-            work[new : new + 6] = 0.0
-        if i >= low:
-            for k in range(3):
-                _gather(f[k, i], work[old + k], work[old + 3 + k], work[new + k], work[new + 3 + k])
+    last = table.shape[0] - 2
+    step = 1.0 / table[last + 1, 0]  # the last row holds the width of an interval
+    w, g = work[: 6 * TILE], work[6 * TILE : SCRATCH]
+    for i in range(max(low - 1, 0), min(high, n - 1)):
+        row = np.uint64(i)
+        for first in range(0, m - 1, TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, m - 1 - first))
+            _sines(x, row, start, count, step, np.float64(last), w)
+            _slopes(table, last, count, w)
+            _pull(x, cell, row, start, count, w, g)
+            if i >= low:
+                _add(f, row, start, count, g, -1.0, PLUS, MINUS)
+            if i + 1 < high:
+                _add(f, row + ONE, start, count, g, 1.0, MINUS, PLUS)
 
 
 def shear_sine(x: np.ndarray) -> np.ndarray:

@@ -39,7 +39,8 @@ class Ply:
         self.sheet = sheet[0]
         self.inverse = np.full((n, n), 1.0 / 1.6e-9)
         self.table = shear_table(*shear_samples("monotone", 0.5, 0.002, [0.4576, -7.394, 36.36, -59.31, 32.37], None))
-        self.work = np.zeros((72, n + 2))
+        self.work = np.zeros(max(bending.SCRATCH, shear.SCRATCH))
+        self.weight = bending.tangent_weights(self.bar1, self.bar2)
         self.lines, self.turned = np.zeros((6 * (n + 1) + 2, LINES)), np.zeros((8, n, LINES))
         self.law = (1.0, 1e-10 * 20_000.0, 0.5e-5 * 20_000.0)
 
@@ -48,7 +49,7 @@ class Ply:
 
     def bending(self):
         bending_forces(
-            self.x, self.f, self.bar1, self.bar2, self.triple1, self.triple2, self.sheet, 0, self.n, self.work
+            self.x, self.f, self.weight, self.triple1, self.triple2, self.sheet, 0, self.n, self.work
         )
 
     def tension(self):

@@ -86,15 +86,16 @@ def _blocks(rows, seam):
 def ply_shear(patch, x, table, seam=None):
     f = np.zeros_like(x)
     for low, high in _blocks(x.shape[1], seam):
-        shear_forces(x, f, patch.cell, table, low, high, np.full((72, x.shape[2] + 2), np.nan))
+        shear_forces(x, f, patch.cell, table, low, high, np.full(shear.SCRATCH, np.nan))
     return f
 
 
 def ply_bending(patch, x, seam=None):
     f = np.zeros_like(x)
     for low, high in _blocks(x.shape[1], seam):
-        work = np.full((72, x.shape[2] + 2), np.nan)
-        bending_forces(x, f, patch.bar1, patch.bar2, patch.triple1, patch.triple2, patch.sheet, low, high, work)
+        work = np.full(bending.SCRATCH, np.nan)
+        weight = bending.tangent_weights(patch.bar1, patch.bar2)
+        bending_forces(x, f, weight, patch.triple1, patch.triple2, patch.sheet, low, high, work)
     return f
 
 

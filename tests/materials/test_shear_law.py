@@ -113,7 +113,7 @@ def _frame_force(angle, table, side=10.0, cells=5):
     cell[:-1, :-1] = a * a
     f = np.zeros((3, *u.shape))
     x = frame(half)
-    shear_forces(x, f, cell, table, 0, cells + 1, np.zeros((72, cells + 3)))
+    shear_forces(x, f, cell, table, 0, cells + 1, np.zeros(SCRATCH))
     motion = (frame(half + 1e-6) - frame(half - 1e-6)) / 2e-6
     crosshead = -2.0 * side * np.sin(half)  # of the diagonal 2 L cos(half), per change of half
     return -np.sum(f * motion) / crosshead
