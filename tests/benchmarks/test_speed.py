@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numba import njit
 
-from ddf.contact.layers import UNKNOWN, layer_forces
+from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces
 from ddf.contact.patch import patch_centres
+from ddf.elements import bending, shear
 from ddf.elements.bending import bending_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
@@ -114,13 +115,17 @@ def test_contact_of_a_pair(benchmark, state):
         pair[key] = value
     fs, area, cell = np.zeros_like(xs), np.full((n, n), 4.0), np.ones((m, m))
     centre = patch_centres(np.ones((m, m), bool))
-    place = np.concatenate([xs[:2] / 2.5, np.full((1, n, n), UNKNOWN)])
-    anchor, buffer, span, out = place[:2].copy(), np.zeros_like(xm), np.zeros((m, 2), np.int64), np.zeros(4)
+    place = np.concatenate([xs[:2] / 2.5, np.full((1, n, n), UNKNOWN), np.zeros((1, n, n))])
+    anchor, buffer, out = place[:2].copy(), np.zeros((m, m, 4)), np.zeros(4)
+    span, scratch = np.tile(np.array([NOWHERE, 0]), (m, 1)), tuple(part[0] for part in chunk_scratch(1))
+    packed = np.ascontiguousarray(np.moveaxis(np.concatenate([xm, np.zeros((1, m, m))]), 0, -1))
     reach = 1e6 if state != "resting" else 1e-6
     rest = np.zeros((n, n), np.int8)
 
     def run():
-        layer_forces(xs, fs, area, xm, cell, centre, place, anchor, rest, buffer, span, pair[0], reach, 1e-5, 0, n, out)
+        layer_forces(
+            xs, fs, area, packed, cell, centre, place, anchor, rest, buffer, span, pair[0], reach, 1e-5, 0, n, scratch, out
+        )
 
     run()
     assert fs.any() == (state == "in-contact")

@@ -4,11 +4,25 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.patch import interpolate, patch_centres, weights
+from ddf.contact.quad import store
 
 
 @njit
-def _at(y, i, j, s, t):
-    return interpolate(y, np.uint64(i), np.uint64(j), weights(s), weights(t))
+def _quads(y, k, stride, s, t, out):
+    parts = interpolate(y, np.uint64(k), np.uint64(stride), weights(s), weights(t))
+    store(out, np.uint64(0), parts[0])
+    store(out, np.uint64(4), parts[1])
+    store(out, np.uint64(8), parts[2])
+    store(out, np.uint64(12), parts[3])
+    store(out, np.uint64(16), parts[4])
+
+
+def _at(y, i, j, s, t, parts=3):
+    """Value and derivatives (along u, v, uu, vv) of one component y (N, M) in the patch of node (i, j)."""
+    nodes, out = np.zeros((*y.shape, 4)), np.zeros(20)
+    nodes[..., 1] = y
+    _quads(nodes.reshape(-1), 4 * ((i - 1) * y.shape[1] + j - 1), 4 * y.shape[1], s, t, out)
+    return tuple(out.reshape(5, 4)[:parts, 1])
 
 
 def test_weights_sum_to_one_and_join_smoothly():
@@ -29,6 +43,9 @@ def test_surface_and_slopes():
         _, du, dv = _at(y, 2, 3, s, t)
         assert abs((_at(y, 2, 3, s + h, t)[0] - _at(y, 2, 3, s - h, t)[0]) / (2 * h) - du) < 1e-8
         assert abs((_at(y, 2, 3, s, t + h)[0] - _at(y, 2, 3, s, t - h)[0]) / (2 * h) - dv) < 1e-8
+        suu, svv = _at(y, 2, 3, s, t, 5)[3:]
+        assert abs((_at(y, 2, 3, s + h, t)[1] - _at(y, 2, 3, s - h, t)[1]) / (2 * h) - suu) < 1e-7
+        assert abs((_at(y, 2, 3, s, t + h)[2] - _at(y, 2, 3, s, t - h)[2]) / (2 * h) - svv) < 1e-7
     # value and slopes are continuous from one patch to the next
     assert np.allclose(_at(y, 2, 3, 0.5, 0.1), _at(y, 3, 3, -0.5, 0.1), atol=1e-14)
     assert np.allclose(_at(y, 2, 3, 0.2, 0.5), _at(y, 2, 4, 0.2, -0.5), atol=1e-14)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddf.contact.layers import UNKNOWN, layer_forces
+from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces, touched
 from ddf.contact.patch import patch_centres
 from ddf.contact.tool import FREE, tool_forces
 from ddf.model import PAIR
@@ -18,6 +18,11 @@ def make_pair(**values):
     return pair[0]
 
 
+def packed(x):
+    """Positions (3, n, m) as contact wants a master's: (n, m, 4), the last component 0."""
+    return np.ascontiguousarray(np.moveaxis(np.concatenate([x, np.zeros((1, *x.shape[1:]))]), 0, -1))
+
+
 class Layers:
     """Slave nodes on a master sheet; place, anchors and last gaps are kept between calls."""
 
@@ -28,7 +33,9 @@ class Layers:
         self.cell = np.ones(self.master)
         self.centre = patch_centres(np.ones(self.master, bool))
         origin = xm[:2, 0, 0].reshape(2, 1, 1)
-        self.place = np.concatenate([(xs[:2] - origin) / spacing, np.full((1, *self.shape), UNKNOWN)])
+        start = (xs[:2] - origin) / spacing
+        unknown = np.full((1, *self.shape), UNKNOWN)
+        self.place = np.concatenate([start, unknown, np.zeros((1, *self.shape))])
         self.anchor = self.place[:2].copy()
         self.out = np.zeros(4)
 
@@ -45,17 +52,19 @@ class Layers:
         self.out = np.zeros(4)
         n = self.shape[0]
         for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
-            buffer, span = np.zeros_like(xm), np.zeros((self.master[0], 2), np.int64)
+            buffer, span = np.zeros((*self.master, 4)), np.tile(np.array([NOWHERE, 0]), (self.master[0], 1))
             rest = np.zeros(self.shape, np.int8)
+            scratch = tuple(part[0] for part in chunk_scratch(1))
             layer_forces(
-                xs, fs, self.area, xm, self.cell, self.centre, self.place, self.anchor, rest, buffer, span,
-                self.pair, 1e6, dt, low, high, self.out,
+                xs, fs, self.area, packed(xm), self.cell, self.centre, self.place, self.anchor, rest, buffer, span,
+                self.pair, 1e6, dt, low, high, scratch, self.out,
             )  # fmt: skip
             for i in range(self.master[0]):
+                first, end = touched(span, i)
                 outside = np.ones(self.master[1], bool)
-                outside[span[i, 0] : span[i, 1]] = False
-                assert not buffer[:, i, outside].any(), "forces beyond the noted columns"
-            fm += buffer
+                outside[min(first, self.master[1]) : end] = False
+                assert not buffer[i, outside].any(), "forces beyond the noted columns"
+            fm += np.moveaxis(buffer[..., :3], -1, 0)
         return fs, fm
 
 

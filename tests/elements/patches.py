@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddf.elements import bending, shear
 from ddf.elements.bending import bending_energy, bending_forces
 from ddf.elements.plate import plate_energy, plate_forces
 from ddf.elements.rubber import cone_volume, rubber_energy, rubber_forces
