@@ -100,7 +100,8 @@ def load_path(case: Case) -> LoadPath:
     start = (process.atmosphere_kPa, process.atmosphere_kPa, 0.0)
     default = case.solver.mass_damping_1_s
     if process.stages is not None:
-        time, rows = [0.0], [start]
+        time: list[float] = [0.0]
+        rows: list[tuple[float, ...]] = [start]
         for stage in process.stages:
             time.append(time[-1] + stage.duration_s)
             wanted = (stage.cavity_pressure_kPa, stage.box_pressure_kPa, stage.tool_lift_mm)
@@ -130,7 +131,11 @@ def _mesh_stack(case: Case) -> _Stack:
     for ply in case.plies:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm
         shape = np.asarray(outline) - np.asarray(ply.offset_mm)
-        plies.append(mesh_ply(shape, holes, slits, ply.orientation_deg, ply.element_mm, tuple(ply.offset_mm), ply.name))
+        plies.append(
+            mesh_ply(
+                shape, holes, slits, ply.orientation_deg, ply.element_mm, (ply.offset_mm[0], ply.offset_mm[1]), ply.name
+            )
+        )
     d = case.diaphragms
     corners = np.concatenate([np.asarray(ply.outline_mm(), dtype=float) for ply in case.plies])
     low, high = corners.min(axis=0) - d.margin_mm, corners.max(axis=0) + d.margin_mm
@@ -366,7 +371,9 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
-        places.append(np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((1, *follow.shape))]).ravel())
+        places.append(
+            np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((1, *follow.shape))]).ravel()
+        )
         anchors.append(place.ravel())
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
         size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
@@ -394,7 +401,7 @@ def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], 
 
 
 def _initial_state(stack: _Stack, model: Model, places: FloatArray, friction: FloatArray) -> State:
-    meshes = [stack.diaphragm, *stack.plies, stack.diaphragm]
+    meshes: list[PlyMesh | DiaphragmMesh] = [stack.diaphragm, *stack.plies, stack.diaphragm]
     parts = []
     for mesh, z in zip(meshes, stack.z, strict=True):
         x = np.array(mesh.x, dtype=float)
@@ -415,7 +422,7 @@ def _initial_state(stack: _Stack, model: Model, places: FloatArray, friction: Fl
 
 def _infos(case: Case, stack: _Stack, model: Model, scales: list[float]) -> tuple[SheetInfo, ...]:
     names = ["bottom-diaphragm", *(ply.name for ply in stack.plies), "top-diaphragm"]
-    meshes = [stack.diaphragm, *stack.plies, stack.diaphragm]
+    meshes: list[PlyMesh | DiaphragmMesh] = [stack.diaphragm, *stack.plies, stack.diaphragm]
     infos = []
     for k, (name, mesh) in enumerate(zip(names, meshes, strict=True)):
         s = model.sheets[k]

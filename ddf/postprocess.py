@@ -26,8 +26,7 @@ def measure(scene: Scene) -> tuple[list[PlySurface], list[WrinkleResult], list[d
     surfaces = [ply_surface(scene, scene.state, k) for k in scene.ply_sheets]
     wrinkles = [find_wrinkles(surface, axis, threshold) for surface in surfaces]
     tables = [
-        ply_metrics(surface, axis, threshold, wrinkles=found)
-        for surface, found in zip(surfaces, wrinkles, strict=True)
+        ply_metrics(surface, axis, threshold, wrinkles=found) for surface, found in zip(surfaces, wrinkles, strict=True)
     ]
     return surfaces, wrinkles, tables
 
@@ -53,9 +52,7 @@ def finish_folder(
     return checks, tables
 
 
-def draw_pictures(
-    scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrinkles: list[WrinkleResult]
-) -> None:
+def draw_pictures(scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrinkles: list[WrinkleResult]) -> None:
     """Draw the pictures of the scene's present state, and the energies from history.csv."""
     from ddf.output.charts import draw_energies
     from ddf.output.figures import save_picture
@@ -119,5 +116,3 @@ def rebuild_report(path: Path) -> Path:
     notes: list[str] = []
     finish_folder(scene, out, energies(scene.model, scene.state), time, notes)
     return report_of(scene, out, notes)
-
-

@@ -33,6 +33,9 @@ from ddf.provenance import provenance
 from ddf.scene import Scene
 from ddf.simulate import Simulation
 
+REPORT_EVERY_S = 1.0
+"""Wall time between two progress reports [s]."""
+
 WORK_WORTH_MENTIONING = 1.0e4
 """Energy errors are judged against at least this much work [N mm] (10 J)."""
 
@@ -205,7 +208,7 @@ class _Runner:
             with self.watch("output"):
                 self._observe(began)
             now = clock.perf_counter()
-            if self.report is not None and (now - last_report > 1.0 or self.sim.step == steps):
+            if self.report is not None and (now - last_report > REPORT_EVERY_S or self.sim.step == steps):
                 last_report = now
                 self.report(self._progress(began, first_step))
             due = now - last_checkpoint > self.scene.case.output.checkpoint_interval_s

@@ -82,7 +82,7 @@ class Simulation:
     def _swept(self) -> dict[int, float]:
         diaphragms = np.flatnonzero(self.model.sheets["kind"] == DIAPHRAGM)
         return {
-            int(k): cone_volume(sheet_vectors(self.model, self.state.x, k), 0, int(self.model.sheets[k]["rows"]))
+            int(k): cone_volume(sheet_vectors(self.model, self.state.x, int(k)), 0, int(self.model.sheets[k]["rows"]))
             for k in diaphragms
         }
 
@@ -104,7 +104,7 @@ class Simulation:
 
     def _batch(self, steps: int) -> None:
         model, state = self.model, self.state
-        times = (self.step + np.arange(steps)) * model.dt
+        times = np.arange(self.step, self.step + steps, dtype=np.float64) * model.dt
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
         self.work.sleep[:] = 0
         self.work.rest[:] = self._followed

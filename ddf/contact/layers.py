@@ -2,8 +2,8 @@
 
 A slave node keeps its place (u, v) on the master's grid; one step of the closest-point projection a time step
 tracks it, with the metric stiffened by |d n.S_aa|: in a fold as tight as the sheet is thick, where Newton's
-step would overshoot or have no answer, places then creep instead of jumping about. With N_k the weights of the surface's nodes there (`patch.py`), tangents S_1, S_2, normal n,
-r = x_s - N_k x_k:
+step would overshoot or have no answer, places then creep instead of jumping about. With N_k the weights of the
+surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
@@ -342,10 +342,16 @@ def layer_forces(
     master's cells; centre (N, M, 2) from `patch_centres`; place (4, n, m): (u, v), gap and its rate of the last step,
     anchor (2, n, m), both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed;
     buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a step [mm];
-    scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy now, friction and damping loss of this step [N mm].
+    scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy now,
+    friction and damping loss of this step [N mm].
     """
     size = xs.shape[1] * xs.shape[2]
-    x, f, place, anchor = xs.reshape((3, size)), fs.reshape((3, size)), place.reshape((4, size)), anchor.reshape((2, size))
+    x, f, place, anchor = (
+        xs.reshape((3, size)),
+        fs.reshape((3, size)),
+        place.reshape((4, size)),
+        anchor.reshape((2, size)),
+    )
     rest, area = rest.reshape(size), area.reshape(size)
     y, forces = xm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
     w, surface, patch, nodes = scratch
@@ -354,5 +360,23 @@ def layer_forces(
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w, surface, patch, nodes, t, x, f, area, y, cell, place, anchor, rest, forces, span, pair, reach, dt, out
+                w,
+                surface,
+                patch,
+                nodes,
+                t,
+                x,
+                f,
+                area,
+                y,
+                cell,
+                place,
+                anchor,
+                rest,
+                forces,
+                span,
+                pair,
+                reach,
+                dt,
+                out,
             )

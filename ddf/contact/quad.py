@@ -76,7 +76,7 @@ def quad(typing, x, y, z):
 
 @intrinsic
 def scaled(typing, number, value):
-    """number * value."""
+    """Return number * value."""
 
     def build(context, builder, signature, args):
         return builder.fmul(_splat(builder, args[0]), args[1])
@@ -86,7 +86,7 @@ def scaled(typing, number, value):
 
 @intrinsic
 def add_scaled(typing, number, value, rest):
-    """number * value + rest."""
+    """Return number * value + rest."""
 
     def build(context, builder, signature, args):
         return builder.fadd(builder.fmul(_splat(builder, args[0]), args[1]), args[2])

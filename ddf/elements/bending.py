@@ -18,7 +18,6 @@ from numba import njit
 
 from ddf.elements.tension import FAST
 
-
 TILE = 128
 """Nodes of a row that go through the passes together: their scratch stays in the first cache."""
 

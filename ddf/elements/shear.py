@@ -14,7 +14,6 @@ from numba import njit
 
 from ddf.elements.tension import FAST
 
-
 TILE = 128
 """Cells of a row that go through the passes together: their scratch stays in the first cache."""
 
@@ -66,7 +65,7 @@ def _slopes(table, last, count, w):
 
 @njit(**FAST)
 def _pull(x, cell, i, start, count, w, g):
-    """plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of all components, G = -dU/dt."""
+    """Set plus = (G1 + G2)/2 and minus = (G1 - G2)/2 of all components, G = -dU/dt."""
     for t in range(count):
         r1, r2, s, slope = w[R1 + t], w[R2 + t], w[S + t], -0.5 * w[SLOPE + t] * cell[i, start + t]
         slope = slope if s >= 0.0 else -slope

@@ -24,10 +24,12 @@ No mass is added to any motion that leaves the bars' lengths alone.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
-FAST = {"fastmath": True, "error_model": "numpy", "boundscheck": False, "cache": True, "nogil": True}
+FAST: dict[str, Any] = {"fastmath": True, "error_model": "numpy", "boundscheck": False, "cache": True, "nogil": True}
 
 LINES = 16
 """Fibre lines that are solved side by side."""

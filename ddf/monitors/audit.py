@@ -6,7 +6,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from ddf.model import PLY, sheet_vectors
+from ddf.model import sheet_scalars, sheet_vectors
 from ddf.monitors.energy import Energies
 from ddf.monitors.stability import fibre_stretch
 from ddf.scene import Scene
@@ -63,10 +63,10 @@ def fibre_strain_range(scene: Scene) -> tuple[float, float]:
     """Least and largest fibre strain ln(lambda) of all plies."""
     low, high = 0.0, 0.0
     for k in scene.ply_sheets:
-        s, mesh = scene.model.sheets[k], scene.sheets[k].mesh
+        s = scene.model.sheets[k]
+        active = sheet_scalars(scene.model, scene.model.mass, k) > 0
         x = sheet_vectors(scene.model, scene.state.x, k)
-        assert s["kind"] == PLY
-        for strain in fibre_stretch(x, mesh.active, (float(s["a1"]), float(s["a2"]))):
+        for strain in fibre_stretch(x, active, (float(s["a1"]), float(s["a2"]))):
             low, high = min(low, float(strain.min())), max(high, float(strain.max()))
     return low, high
 

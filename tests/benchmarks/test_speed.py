@@ -49,9 +49,7 @@ class Ply:
         shear_forces(self.x, self.f, self.cell, self.table, 0, self.n, self.work)
 
     def bending(self):
-        bending_forces(
-            self.x, self.f, self.weight, self.triple1, self.triple2, self.sheet, 0, self.n, self.work
-        )
+        bending_forces(self.x, self.f, self.weight, self.triple1, self.triple2, self.sheet, 0, self.n, self.work)
 
     def tension(self):
         _pull_all(self.x, self.v, self.inverse, self.bar1, self.bar2, self.law, self.turned, self.lines)
@@ -124,7 +122,24 @@ def test_contact_of_a_pair(benchmark, state):
 
     def run():
         layer_forces(
-            xs, fs, area, packed, cell, centre, place, anchor, rest, buffer, span, pair[0], reach, 1e-5, 0, n, scratch, out
+            xs,
+            fs,
+            area,
+            packed,
+            cell,
+            centre,
+            place,
+            anchor,
+            rest,
+            buffer,
+            span,
+            pair[0],
+            reach,
+            1e-5,
+            0,
+            n,
+            scratch,
+            out,
         )
 
     run()

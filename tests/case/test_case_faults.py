@@ -528,14 +528,10 @@ KEYS = st.sampled_from(
 WORDS = st.sampled_from(
     ["woven", "hyperelastic", "box", "file", "cylinder", "hemisphere", "silicone-ogden", "plain-weave-6k-320"]
 )
-LEAVES = (
-    st.none() | st.booleans() | st.integers() | st.floats() | WORDS | st.text(max_size=5) | st.datetimes()
-)
+LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | WORDS | st.text(max_size=5) | st.datetimes()
 VALUES = st.recursive(
     LEAVES,
-    lambda inner: (
-        st.lists(inner, max_size=5) | st.dictionaries(KEYS | st.text(max_size=3), inner, max_size=5)
-    ),
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(KEYS | st.text(max_size=3), inner, max_size=5),
     max_leaves=20,
 )
 QUICK = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

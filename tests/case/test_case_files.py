@@ -82,9 +82,7 @@ def test_defaults_of_a_minimal_case(tmp_path):
 
 
 def test_gap_grows_with_the_plies():
-    assert resolve_gap_mm(case_from_dict(MINIMAL | {"plies": [{"size_mm": [9, 9]}] * 3})) == pytest.approx(
-        1.7
-    )
+    assert resolve_gap_mm(case_from_dict(MINIMAL | {"plies": [{"size_mm": [9, 9]}] * 3})) == pytest.approx(1.7)
     assert resolve_gap_mm(case_from_dict(MINIMAL | {"diaphragms": {"gap_mm": 0.9}})) == 0.9
 
 

@@ -5,9 +5,9 @@ import pytest
 from conftest import copied
 from numba.core.runtime import _nrt_python, rtsys
 
+from ddf.dynamics.step import advance
 from ddf.model import TOOL_FRICTION, TOOL_WORK, sheet_scalars, sheet_vectors
 from ddf.monitors.energy import energies, sheet_strain
-from ddf.dynamics.step import advance
 from ddf.simulate import Simulation
 
 SMALL = (

@@ -88,9 +88,7 @@ def test_far_field_of_tool_and_platform(fields, shape):
 def test_faces_are_exact(fields):
     rng = np.random.default_rng(2)
     count = 4000
-    top = np.stack(
-        [rng.uniform(-28, 28, count), rng.uniform(-18, 18, count), rng.uniform(26.5, 34, count)], 1
-    )
+    top = np.stack([rng.uniform(-28, 28, count), rng.uniform(-18, 18, count), rng.uniform(26.5, 34, count)], 1)
     np.testing.assert_allclose(fields("box").distance(top), top[:, 2] - 30.0, atol=2e-3)
     np.testing.assert_allclose(fields("box").gradient(top), np.tile([0.0, 0.0, 1.0], (count, 1)), atol=1e-3)
 
@@ -131,9 +129,7 @@ def test_outside_the_grid(fields):
     assert (field.distance(points) == OUTSIDE_MM).all()
     assert (field.gradient(points) == [0.0, 0.0, 1.0]).all()
     assert field.platform_distance(points)[0] == 10.0
-    assert sample(field.values, field.origin, field.spacing, 0.0, 0.0, 45.0)[0] == pytest.approx(
-        5.0, abs=0.03
-    )
+    assert sample(field.values, field.origin, field.spacing, 0.0, 0.0, 45.0)[0] == pytest.approx(5.0, abs=0.03)
 
 
 def test_same_field_every_time(fields):

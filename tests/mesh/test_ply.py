@@ -105,9 +105,7 @@ def test_row_span_of_a_turned_square():
         assert (np.flatnonzero(row)[[0, -1]] == (first, last - 1)).all() if row.any() else last == 0
 
 
-@pytest.mark.parametrize(
-    "slit", [[[-60.0, 1.0], [60.0, 1.0]], [[-60.0, 0.0], [60.0, 0.0]], [[-60, -60], [60, 60]]]
-)
+@pytest.mark.parametrize("slit", [[[-60.0, 1.0], [60.0, 1.0]], [[-60.0, 0.0], [60.0, 0.0]], [[-60, -60], [60, 60]]])
 @pytest.mark.parametrize("angle", [0.0, 30.0])
 def test_slit_across_separates_the_ply(slit, angle):
     ply = mesh_ply(SQUARE, [], [slit], angle, 2.5)

@@ -134,9 +134,7 @@ def folded(u: np.ndarray, v: np.ndarray, profile: tuple, angle_deg: float = 0.0)
     return np.stack([along * c - place * s, along * s + place * c, np.interp(across, arc, z)])
 
 
-def bend(
-    u: np.ndarray, v: np.ndarray, h: np.ndarray, slope: float, radius: float, flat_to: float = 0.0
-) -> np.ndarray:
+def bend(u: np.ndarray, v: np.ndarray, h: np.ndarray, slope: float, radius: float, flat_to: float = 0.0) -> np.ndarray:
     """A sheet with one cylindrical bend across the first direction, and points at height h over it.
 
     Level to u = flat_to, then an arc of `radius` through `slope` (up if positive), then straight.

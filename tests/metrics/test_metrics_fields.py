@@ -86,9 +86,7 @@ def test_outline_with_a_hole_and_points_inside_cells():
     u, v = grid(100, 2)
     outer = np.array([[0, 0], [50, 0], [50, 50], [0, 50], [0, 0]], float)
     hole = np.array([[20.3, 20.3], [29.7, 20.3], [29.7, 29.7], [20.3, 29.7]])
-    surface = sheet(
-        linear(u, v, [[1, 0], [0, 1]]), outline=[outer, hole], corners=[np.arange(4), np.arange(4)]
-    )
+    surface = sheet(linear(u, v, [[1, 0], [0, 1]]), outline=[outer, hole], corners=[np.arange(4), np.arange(4)])
     deformed, _ = boundary_profile(surface)
     assert outline_area(deformed) == pytest.approx(10000 - 18.8**2)
     assert deformed[1][0] == pytest.approx([-9.4, -9.4, 0])
@@ -106,9 +104,7 @@ def test_outline_askew_to_the_fibres_and_turned_clockwise():
 def test_bridging_over_a_hollow_corner():
     u, v = grid(160, 2)
     slope, radius = np.radians(54.7), 40.0
-    surface = sheet(
-        bend(u, v, 0 * u, slope, radius, -20 * slope), corner_distance(slope, radius, -20 * slope)
-    )
+    surface = sheet(bend(u, v, 0 * u, slope, radius, -20 * slope), corner_distance(slope, radius, -20 * slope))
     bridging = find_bridging(surface)
     assert bridging.largest_mm == pytest.approx(radius * (1 - np.cos(0.5 * slope)), rel=0.005)
     # gap over the arc: R (1 - cos t) up to the middle, twice

@@ -54,9 +54,7 @@ def test_tapered_ridge_on_a_plane(spacing, angle, amplitude, sigma):
     found = np.array([wrinkle.start[:2], wrinkle.end[:2]])
     found = found[np.argsort(found @ (ends[1] - ends[0]))]
     assert np.abs(found - ends).max() < 1.0
-    assert wrinkle.section_area_mm2 / wrinkle.mean_amplitude_mm == pytest.approx(
-        np.sqrt(2 * np.pi) * sigma, rel=0.04
-    )
+    assert wrinkle.section_area_mm2 / wrinkle.mean_amplitude_mm == pytest.approx(np.sqrt(2 * np.pi) * sigma, rel=0.04)
     if amplitude == 1:  # nearly unstretched: the angles to the fibres are the line's
         assert wrinkle.angle_to_family_1_deg == pytest.approx(angle, abs=1)
         assert wrinkle.angle_to_family_2_deg == pytest.approx(90 - angle, abs=1)
@@ -75,9 +73,7 @@ def test_wave_counts_every_crest_and_measures_from_trough_to_crest():
 
 def test_two_neighbours_are_two():
     u, v = grid(160, 2)
-    h = sum(
-        ridge(u, v, amplitude=a, sigma=3, length=80, ends=15, centre=(0, y)) for a, y in ((5, -9), (3, 9))
-    )
+    h = sum(ridge(u, v, amplitude=a, sigma=3, length=80, ends=15, centre=(0, y)) for a, y in ((5, -9), (3, 9)))
     result = find_wrinkles(sheet(np.stack([u, v, h]), plane_distance))
     assert [w.amplitude_mm for w in result.wrinkles] == pytest.approx([5, 3], rel=0.03)
     assert [w.start[1] for w in result.wrinkles] == pytest.approx([-9, 9], abs=0.5)
@@ -165,9 +161,7 @@ def test_noise_hardly_changes_a_wrinkle():
 def test_ridge_next_to_bridging_gives_both():
     u, v = grid(160, 2)
     h = ridge(u, v, amplitude=5, sigma=3, angle_deg=90, length=80, ends=15, centre=(-40, 0))
-    surface = sheet(
-        bend(u, v, h, SLOPE, 40.0, flat_to=-20 * SLOPE), corner_distance(SLOPE, 40.0, -20 * SLOPE)
-    )
+    surface = sheet(bend(u, v, h, SLOPE, 40.0, flat_to=-20 * SLOPE), corner_distance(SLOPE, 40.0, -20 * SLOPE))
     result = find_wrinkles(surface)
     bridging = find_bridging(surface, result.mask)
     assert result.count == 1
@@ -184,9 +178,7 @@ def test_ridge_across_bridging_is_measured_from_the_spanning_sheet():
     assert result.count == 1
     assert result.wrinkles[0].amplitude_mm == pytest.approx(5, rel=0.02)
     assert result.wrinkles[0].angle_to_family_1_deg < 1
-    assert find_bridging(surface, result.mask).largest_mm == pytest.approx(
-        40 * (1 - np.cos(0.5 * SLOPE)), rel=0.05
-    )
+    assert find_bridging(surface, result.mask).largest_mm == pytest.approx(40 * (1 - np.cos(0.5 * SLOPE)), rel=0.05)
 
 
 @pytest.mark.parametrize("angle", [30.0, 50.0])
@@ -229,12 +221,8 @@ def test_ply_cut_askew_ends_its_wrinkles_at_the_outline():
     half = 0.5 * (n - 1)
     outline = half + np.array([[39, 0], [0, 39], [-39, 0], [0, -39]])
     cells = inside[1:, 1:] & inside[1:, :-1] & inside[:-1, 1:] & inside[:-1, :-1]
-    fraction = np.where(
-        cells, 1.0, 0.5 * (inside[1:, 1:] | inside[1:, :-1] | inside[:-1, 1:] | inside[:-1, :-1])
-    )
-    surface = sheet(
-        x, plane_distance, active=inside, cell_fraction=fraction, outline=[outline], corners=[np.arange(4)]
-    )
+    fraction = np.where(cells, 1.0, 0.5 * (inside[1:, 1:] | inside[1:, :-1] | inside[:-1, 1:] | inside[:-1, :-1]))
+    surface = sheet(x, plane_distance, active=inside, cell_fraction=fraction, outline=[outline], corners=[np.arange(4)])
     result = find_wrinkles(surface)
     assert result.count == 1
     assert result.wrinkles[0].length_mm == pytest.approx(156, rel=0.03)

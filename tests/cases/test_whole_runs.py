@@ -1,0 +1,115 @@
+"""Whole runs through the API and the command line: interruption, resumption, exit codes."""
+
+import csv
+import json
+import os
+import signal
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import ddf.run
+from ddf.case import load_case
+from ddf.cli import main
+from ddf.errors import UsageError
+from ddf.output.results import open_run
+from ddf.run import run_case
+
+SMALL = [
+    "plies.0.element_mm=12.5",
+    "diaphragms.element_mm=14",
+    "process.stages.0.duration_s=0.004",
+    "process.stages.1.duration_s=0.012",
+    "process.stages.2.duration_s=0.004",
+    "process.stages.3.duration_s=0.002",
+    "output.frames_per_stage=2",
+    "solver.energy_error_limit_percent=100",
+]
+
+
+@pytest.fixture(scope="module")
+def case():
+    return load_case("cases/tetrahedron-0-90-coarse.toml", SMALL)
+
+
+@pytest.fixture(scope="module")
+def whole(case, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    return run_case(case, folder, threads=2)
+
+
+def _rows(folder):
+    with open(folder / "history.csv", newline="") as stream:
+        return [{k: v for k, v in row.items() if k != "wall_s"} for row in csv.DictReader(stream)]
+
+
+def test_run_leaves_all_that_is_promised(whole):
+    assert whole.stop_reason == "finished"
+    for name in (
+        "case.toml", "case.resolved.toml", "run.json", "history.csv", "profiles/ply-1.csv", "wrinkles.csv",
+        "metrics.json", "checkpoint.npz", "report.html", "ply-1.pvd", "tool.pvd", "pictures/formed-ply-1.png",
+        "pictures/shear-ply-1.png", "pictures/distance-ply-1.png", "pictures/outline-ply-1.png", "pictures/energies.png",
+    ):  # fmt: skip
+        assert (whole.folder / name).stat().st_size > 0, name
+    assert not list(whole.folder.rglob("*.tmp*"))
+    info = json.loads((whole.folder / "run.json").read_text())
+    assert info["stop_reason"] == "finished"
+    assert {check["name"] for check in info["audit"]} >= {"energy balance error", "deepest penetration of the tool"}
+
+
+def test_finished_run_opens_as_arrays(whole, case):
+    run = open_run(whole.folder)
+    assert run.history()["time_s"][-1] == pytest.approx(case.process.duration_s, rel=0.01)
+    frames = run.frames("ply-1")
+    assert len(frames) == 1 + 2 * 4
+    last = run.read_frame("ply-1")
+    assert np.isfinite(last["shear_angle_deg"]).all()
+    profile = run.profile("ply-1")
+    assert np.hypot(profile["x0_mm"], profile["y0_mm"]).max() == pytest.approx(175 * 2**0.5)
+
+
+def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypatch):
+    monkeypatch.setattr(ddf.run, "REPORT_EVERY_S", 0.0)
+
+    def stop_halfway(progress):
+        if progress.step >= progress.steps // 2:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    first = run_case(case, tmp_path / "run", threads=1, report=stop_halfway)
+    assert first.stop_reason == "interrupted"
+    assert first.step < whole.step
+    second = run_case(case, tmp_path / "run", threads=1, resume=True)
+    assert second.stop_reason == "finished"
+    with np.load(whole.folder / "checkpoint.npz") as a, np.load(tmp_path / "run" / "checkpoint.npz") as b:
+        for name in a.files:
+            if name.startswith("state_"):
+                assert np.array_equal(a[name], b[name]), name
+    assert _rows(whole.folder) == _rows(tmp_path / "run")
+    assert len(open_run(tmp_path / "run").frames("ply-1")) == 9
+
+
+def test_a_folder_in_use_is_refused(whole, case):
+    with pytest.raises(UsageError, match="not empty"):
+        run_case(case, whole.folder)
+
+
+def test_commands_and_exit_codes(tmp_path):
+    runner = CliRunner()
+    assert runner.invoke(main, ["--help"]).exit_code == 0
+    new = tmp_path / "new.toml"
+    assert runner.invoke(main, ["init", str(new)]).exit_code == 0
+    assert runner.invoke(main, ["init", str(new)]).exit_code == 2
+    checked = runner.invoke(
+        main, ["check", str(new), "--set", "plies.0.element_mm=10", "--set", "diaphragms.element_mm=12"]
+    )
+    assert checked.exit_code == 0
+    assert "cube-corner-tetrahedron" in checked.output
+    assert "monotone shear law" in checked.output
+    assert "solver" in runner.invoke(main, ["schema"]).output
+    new.write_text(new.read_text().replace("thickness_mm", "thicknes_mm", 1) + "\n[unknown]\na = 1\n")
+    bad = runner.invoke(main, ["run", str(new)])
+    assert bad.exit_code == 2
+    assert "thickness_mm" in bad.output
+    assert "unknown" in bad.output
+    assert runner.invoke(main, ["run", str(tmp_path / "missing.toml")]).exit_code == 2
