@@ -42,7 +42,7 @@ class Solver(Section):
         default=1.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=4.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+        default=15.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
     threads: int | None = Field(

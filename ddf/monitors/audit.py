@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TypedDict
 
 import numpy as np
@@ -35,6 +36,14 @@ def deepest_penetration(scene: Scene, time: float) -> float:
         return 0.0
     x = sheet_vectors(scene.model, scene.state.x, scene.model.tool_sheet)
     deepest = -np.inf
+    for p in _samples(x):
+        d = scene.obstacle_distance(p, time)
+        deepest = max(deepest, float(np.max(scene.model.tool_offset - d)))
+    return max(deepest, 0.0)
+
+
+def _samples(x: np.ndarray) -> Iterator[np.ndarray]:
+    """SAMPLES x SAMPLES points of every bilinear cell of x (3, n, m), (k, 3) at a time."""
     share = (np.arange(SAMPLES) + 0.5) / SAMPLES
     for a in share:
         for b in share:
@@ -44,19 +53,18 @@ def deepest_penetration(scene: Scene, time: float) -> float:
                 + (1 - a) * b * x[:, :-1, 1:]
                 + a * b * x[:, 1:, 1:]
             )
-            d = scene.obstacle_distance(p.reshape(3, -1).T, time)
-            deepest = max(deepest, float(np.max(scene.model.tool_offset - d)))
-    return max(deepest, 0.0)
+            yield p.reshape(3, -1).T
 
 
 def apex_gap(scene: Scene, time: float) -> float:
-    """Least distance between the tool's highest point and the tool-side face of its sheet [mm]."""
+    """Least distance between the tool's highest point and the tool-side face of its sheet [mm], dense sample."""
     if scene.tool_mesh is None:
         return 0.0
     points = scene.tool_mesh.points
     top = points[np.argmax(points[:, 2])] + [0.0, 0.0, scene.tool_z(time)]
     x = sheet_vectors(scene.model, scene.state.x, scene.model.tool_sheet)
-    return float(np.sqrt(((x - top[:, None, None]) ** 2).sum(axis=0)).min() - scene.model.tool_offset)
+    nearest = min(float(((p - top) ** 2).sum(axis=1).min()) for p in _samples(x))
+    return float(np.sqrt(nearest) - scene.model.tool_offset)
 
 
 def fibre_strain_range(scene: Scene) -> tuple[float, float]:

@@ -49,7 +49,8 @@ def test_run_leaves_all_that_is_promised(whole):
     for name in (
         "case.toml", "case.resolved.toml", "run.json", "history.csv", "profiles/ply-1.csv", "wrinkles.csv",
         "metrics.json", "checkpoint.npz", "report.html", "ply-1.pvd", "tool.pvd", "pictures/formed-ply-1.png",
-        "pictures/shear-ply-1.png", "pictures/distance-ply-1.png", "pictures/outline-ply-1.png", "pictures/energies.png",
+        "pictures/shear-ply-1.png", "pictures/distance-ply-1.png", "pictures/outline-ply-1.png",
+        "pictures/energies.png",
     ):  # fmt: skip
         assert (whole.folder / name).stat().st_size > 0, name
     assert not list(whole.folder.rglob("*.tmp*"))
