@@ -2,7 +2,7 @@
 
 The trial traction is  t = k s + c v  with s the way from the anchor and v the slip rate. Where |t| > mu N the
 traction is scaled back to mu N and the anchor follows, so that the spring carries mu N again. Dissipated is
-what the spring loses when its anchor moves, 1/2 k s^2 (1 - keep^2), and the work of the viscous part.
+the spring's force times the way of its anchor, k keep s (1 - keep) s, and the work of the viscous part.
 """
 
 from __future__ import annotations

@@ -276,7 +276,7 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
         viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
-        rubbed += 0.5 * kt * stretch2 * (1.0 - keep * keep) - viscous
+        rubbed += kt * stretch2 * keep * (1.0 - keep) - viscous
         w[RATE + t] = rate
         # the damping of the last step worked on the mean of the rates before and after it
         damped += 0.5 * c * w[OLD_RATE + t] * (w[OLD_RATE + t] + rate)

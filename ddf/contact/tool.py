@@ -74,7 +74,7 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out)
     out[1] += 0.5 * k * (keep * stretch) ** 2
     held = k * keep
     viscous = (tx + held * sx) * vx + (ty + held * sy) * vy + (tz + held * sz) * vz
-    out[2] += 0.5 * k * stretch * stretch * (1.0 - keep * keep) - dt * viscous
+    out[2] += k * stretch * stretch * keep * (1.0 - keep) - dt * viscous
     return fx + tx, fy + ty, fz + tz, near
 
 

@@ -181,6 +181,6 @@ def test_block_slides_down_an_incline(degrees, mu):
 
 def test_block_sticks_under_enough_friction():
     _, path, v = _slide(20.0, 0.8)  # enough for the first swing, twice as far as the rest
-    elastic = 1e-5 * 9810.0 * np.sin(np.deg2rad(20.0)) / 2.0
+    elastic = 1e-5 * 9810.0 * np.sin(np.deg2rad(20.0)) / (2.0 * TANGENTIAL)
     assert path[-1] == pytest.approx(elastic, rel=0.01)
     assert np.abs(v).max() < 0.1
