@@ -25,6 +25,12 @@ def copied(scene: Scene) -> Scene:
 
 
 @pytest.fixture(scope="session")
+def copy_scene() -> Callable[[Scene], Scene]:
+    """Makes the same scene with a state of its own."""
+    return copied
+
+
+@pytest.fixture(scope="session")
 def make_scene() -> SceneMaker:
     """Scene of a shipped case with overrides; meshed once, a fresh state each time."""
     built: dict[tuple[str, ...], Scene] = {}
