@@ -151,7 +151,7 @@ def test_clamped_stack_is_in_contact_and_flat(clamped):
     assert top[middle] - bottom[middle] == pytest.approx(2.0 * (1.0 - give), rel=0.01)
 
 
-@pytest.mark.xfail(strict=True, reason="what clipped contact damping takes in the first impact is not booked")
+@pytest.mark.xfail(strict=True, reason="the first impact leaves 8 % of its small work unbooked; cause not isolated")
 def test_energy_balance_of_the_clamped_stack_closes(clamped):
     _, history = clamped
     assert max(abs(e.error_share) for time, e in history if time > 0.005) < 0.01
