@@ -3,31 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ddf.contact.layers import NOWHERE, chunk_scratch
-from ddf.dynamics.step import SCRATCH_ROWS, Work, advance
+from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
 from ddf.dynamics.team import Team
 from ddf.elements import bending, shear
 from ddf.elements.rubber import cone_volume
-from ddf.elements.tension import FAST, LINES
+from ddf.elements.tension import LINES
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
 from ddf.scene import Scene
 
 BATCH = 10  # steps between two looks at how fast the sheets are
 REACH_SPEED = 500.0  # mm/s: least relative speed that sleeping cells and resting nodes allow for
-
-
-@njit(**FAST)
-def _largest_square(v):
-    """Largest squared speed of a vector array (3, n, m); NaN if any component is."""
-    top = 0.0
-    for i in range(v.shape[1]):
-        for j in range(v.shape[2]):
-            s = v[0, i, j] ** 2 + v[1, i, j] ** 2 + v[2, i, j] ** 2
-            if not s <= top:
-                top = s
-    return top
 
 
 def make_work(model: Model, members: int) -> Work:
@@ -92,7 +79,7 @@ class Simulation:
 
     def fastest(self, k: int) -> float:
         """Largest speed in sheet k [mm/s]."""
-        return float(np.sqrt(_largest_square(sheet_vectors(self.model, self.state.v, k))))
+        return float(np.sqrt(largest_square(sheet_vectors(self.model, self.state.v, k))))
 
     def advance(self, steps: int) -> None:
         """Run `steps` steps. Batches must be the same in a run that is resumed: they set who rests how long."""

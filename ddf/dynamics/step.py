@@ -75,6 +75,18 @@ class Work(NamedTuple):
 
 
 @njit(**FAST)
+def largest_square(v):
+    """Largest squared speed of a vector array (3, n, m); NaN if any component is."""
+    top = 0.0
+    for i in range(v.shape[1]):
+        for j in range(v.shape[2]):
+            s = v[0, i, j] ** 2 + v[1, i, j] ** 2 + v[2, i, j] ** 2
+            if not s <= top:
+                top = s
+    return top
+
+
+@njit(**FAST)
 def _internal(model, state, row, b, scratch):
     """Internal forces and pressure of a block's rows; they are cleared first."""
     block = model.blocks[b]
