@@ -82,7 +82,8 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, dt=dt,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool,
+        gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
     state = _initial_state(stack, model, places, anchors)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)

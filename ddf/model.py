@@ -99,7 +99,7 @@ class Model(NamedTuple):
     blocks: np.ndarray  # BLOCK, sheet by sheet, rows ascending
     pairs: np.ndarray  # PAIR
     mass: np.ndarray  # (N,) [tonne], scaled
-    inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node
+    inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node at its given velocity
     area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
     row_span: np.ndarray  # (rows of all sheets, 2) first and last+1 node that exists
     row_first: np.ndarray  # (sheets,) first row of a sheet in row_span
@@ -123,6 +123,7 @@ class Model(NamedTuple):
     tool_damping: float
     tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
+    gravity: np.ndarray  # (3,) acceleration that all (scaled) masses feel [mm/s2]
     dt: float
 
 

@@ -226,13 +226,18 @@ def _collect(model, state, work, b):
 
 
 @njit(**FAST)
-def _kick_row(v, f, inverse_mass, mass, damping, dt):
-    """V <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick."""
+def _kick_row(v, f, inverse_mass, mass, damping, gravity, dt):
+    """V <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick.
+
+    Gravity is added to f first. Held nodes (no inverse mass) keep their velocity.
+    """
     square = power = 0.0
     for j in range(v.shape[0]):
+        f[j] += gravity * mass[j]
         square += mass[j] * v[j] * v[j]
         power += f[j] * v[j]
-        v[j] = damping * v[j] + dt * inverse_mass[j] * f[j]
+        keep = damping if inverse_mass[j] > 0.0 else 1.0
+        v[j] = keep * v[j] + dt * inverse_mass[j] * f[j]
     return square, power
 
 
@@ -258,7 +263,7 @@ def _kick(model, state, b, damping):
     square = power = 0.0
     for i in range(block.low, block.high):
         for c in range(3):
-            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, dt)
+            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, model.gravity[c], dt)
             square += p
             power += q
             if sheet.kind != PLY:
