@@ -63,10 +63,10 @@ def build_scene(case: Case) -> Scene:
     terms = rubber.abaqus_terms
     sheets, laws, tangents = _sheets(case, stack, terms)
     scale, masses = _masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3, tangents)
-    limit = _step_limit(case, stack, terms, masses, tangents, tool_field is not None)
+    limit = _step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s
     pools = _pools(case, stack, sheets, masses)
-    pairs, exposed, places, anchors = _pairs(case, stack, masses, sheets)
+    pairs, exposed, places = _pairs(case, stack, masses, sheets)
     blocks = _blocks(sheets)
     friction, solver = case.friction, case.solver
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
@@ -85,7 +85,7 @@ def build_scene(case: Case) -> Scene:
         tool_mass=masses[0], tool_friction=friction.diaphragm_tool,
         gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
-    state = _initial_state(stack, model, places, anchors)
+    state = _initial_state(stack, model, places)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)
     face = stack.z[0] - 0.5 * stack.thickness[0]
     return Scene(
@@ -193,8 +193,8 @@ def _masses(case: Case, stack: _Stack, density: float, tangents: list[float]) ->
 
 
 def _ply_omega2(case: Case, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
-    stiff, tension = case.solver.contact_stiffness_N_mm3, case.solver.fibre_tension_allowed_N_mm
-    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, tension, ply.spacing, 2.0 * stiff, mass)
+    stiff = case.solver.contact_stiffness_N_mm3
+    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, ply.spacing, 2.0 * stiff, mass)
 
 
 def _sheets(case: Case, stack: _Stack, terms):
@@ -207,6 +207,7 @@ def _sheets(case: Case, stack: _Stack, terms):
     for k in range(count):
         s = sheets[k]
         s["node"], s["thickness"] = node, stack.thickness[k]
+        s["hourglass"] = 4.0 * ogden.initial_shear_modulus(terms) * d.thickness_mm
         if 0 < k < count - 1:
             ply, material = stack.plies[k - 1], stack.materials[k - 1]
             s["kind"], s["shear"] = PLY, k - 1
@@ -215,6 +216,7 @@ def _sheets(case: Case, stack: _Stack, terms):
             s["eh1"], s["eh2"] = material.membrane_modulus_N_mm
             s["bend1"], s["bend2"] = material.bending_rigidity_Nmm
             s["bend_in_plane"] = material.in_plane_bending_Nmm
+            s["fold_radius"] = 0.5 * (d.thickness_mm + material.thickness_mm)
             table = material.shear_table
             angle, force = shear_law.shear_samples(
                 material.shear_law, material.thickness_mm, material.shear_modulus_floor_MPa,
@@ -228,12 +230,12 @@ def _sheets(case: Case, stack: _Stack, terms):
             s["face"] = PRESSURE_BOTTOM if k == 0 else PRESSURE_TOP
             s["thickness"] = d.thickness_mm
             s["rigidity"] = ogden.bending_rigidity(terms, d.thickness_mm) if d.bending else 0.0
-            s["hourglass"] = 4.0 * ogden.initial_shear_modulus(terms) * d.thickness_mm
+            s["fold_radius"] = d.thickness_mm + sum(m.thickness_mm for m in stack.materials)
         node += int(s["rows"] * s["cols"])
     return sheets, np.array(tables), tangents
 
 
-def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents: list[float], tool: bool) -> float:
+def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents: list[float]) -> float:
     """Stable step [s], the least of all sheets, safety included."""
     solver, d = case.solver, case.diaphragms
     stiff = solver.contact_stiffness_N_mm3
@@ -243,13 +245,10 @@ def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents:
         damping = 2.0 * sum(_pair_damping(case, masses, k + 1, other) for other in (k, k + 2))
         limits.append((math.sqrt(omega2), damping / masses[k + 1]))
     mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, d.thickness_mm)
-    press = solver.tool_contact_stiffness_N_mm3 if tool else 0.0
     omega2 = timestep.diaphragm_omega2(
-        mu, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff, press
+        mu, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff
     )
     damping = 2.0 * max(_pair_damping(case, masses, 0, other) for other in range(1, len(masses)))
-    if tool:
-        damping += timestep.contact_damping(solver.contact_damping, press, masses[0], math.inf)
     limits.append((math.sqrt(omega2), damping / masses[0]))
     return solver.step_safety * min(timestep.damped_limit(w, c / (2.0 * w)) for w, c in limits)
 
@@ -358,7 +357,7 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
     # each diaphragm against the other at half stiffness: one way only, small errors in how a graded grid
     # passes on a pressure push the whole stack to one side
     wanted += [(top, 0, 1.0, friction.diaphragm_diaphragm), (0, top, -1.0, friction.diaphragm_diaphragm)]
-    records, exposed, places, anchors = [], [], [], []
+    records, exposed, places = [], [], []
     first = buffer = span = 0
     for slave, master, sign, mu in wanted:
         follow, place = _follow(stack, slave, master)
@@ -373,16 +372,15 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
         places.append(
-            np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((1, *follow.shape))]).ravel()
+            np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((2, *follow.shape))]).ravel()
         )
-        anchors.append(place.ravel())
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
         size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
         blocks = math.ceil(int(sheets[slave]["rows"]) / size)
         first += follow.size
         buffer += 4 * n * m * blocks
         span += n * blocks
-    return np.array(records, dtype=PAIR), np.concatenate(exposed), np.concatenate(places), np.concatenate(anchors)
+    return np.array(records, dtype=PAIR), np.concatenate(exposed), np.concatenate(places)
 
 
 def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], FloatArray]:
@@ -401,7 +399,7 @@ def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], 
     return follow, place
 
 
-def _initial_state(stack: _Stack, model: Model, places: FloatArray, friction: FloatArray) -> State:
+def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
     meshes: list[PlyMesh | DiaphragmMesh] = [stack.diaphragm, *stack.plies, stack.diaphragm]
     parts = []
     for mesh, z in zip(meshes, stack.z, strict=True):
@@ -415,7 +413,8 @@ def _initial_state(stack: _Stack, model: Model, places: FloatArray, friction: Fl
     anchors[..., 0] = FREE
     return State(
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
-        place=places, anchor=friction, tool_anchor=anchors,
+        place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors,
+        tension1=np.zeros(x.size // 3), tension2=np.zeros(x.size // 3),
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
         clock=np.zeros(2),
     )  # fmt: skip

@@ -10,14 +10,16 @@ name           shape                 meaning [unit]
 ============== ===================== =========================================================================
 x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] without fibre tension;
                                      sheet k is the slice 3*node : 3*(node + rows*cols) as (3, rows, cols)
-place          (4, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate
-anchor         (2, P)                where its friction spring is anchored, grid coordinates
+place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
+                                     viscous normal force [N]
+slip           (2, P)                slip of its friction spring, contravariant components [grid units]
 tool_anchor    (3, Q)                anchors of the tool's contact points, tool frame [mm]
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
 row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)
 col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
 cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
 bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
+tension1, 2    pool (N,)             tension of these bars [N]
 step           dt                    one evaluation of all forces [s]
 ============== ===================== =========================================================================
 """
@@ -60,7 +62,8 @@ SHEET = np.dtype(
         ("bend_in_plane", np.float64),
         ("thickness", np.float64),
         ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
-        ("hourglass", np.float64),  # diaphragm: stabilisation modulus x thickness [N/mm]
+        ("hourglass", np.float64),  # modulus 4 mu t of the diaphragms: hourglass strains, fold struts [N/mm]
+        ("fold_radius", np.float64),  # least radius of a fold [mm]
     ],
     align=True,
 )
@@ -134,8 +137,10 @@ class State(NamedTuple):
     v: np.ndarray
     f: np.ndarray
     place: np.ndarray
-    anchor: np.ndarray
+    slip: np.ndarray
     tool_anchor: np.ndarray
+    tension1: np.ndarray  # (N,) tension of each bar, as the last step left it [N]
+    tension2: np.ndarray
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
     clock: np.ndarray  # (2,): step number, time [s]

@@ -32,12 +32,6 @@ class Solver(Section):
     step_s: float | None = Field(
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
-    fibre_tension_allowed_N_mm: float = Field(
-        default=30.0,
-        ge=0,
-        le=1e4,
-        description="Fibre tension per width that the step is made stable for [N/mm]: it acts like a string's.",
-    )
     contact_stiffness_N_mm3: float = Field(
         default=1.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )

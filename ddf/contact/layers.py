@@ -7,8 +7,9 @@ surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x
 
     gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
-    slip   s = (place - anchor)^a S_a;        friction spring of stiffness 0.3 K A, Coulomb limit mu N
-    rates  of gap and slip are their changes since the last step over dt, so they turn with the master
+    slip   s = s^a S_a;                       friction spring of stiffness 0.3 K A, Coulomb limit mu N
+    rates  of gap and slip are those on which the forces below do work: with w = v_s - (N_k + N_k,a r^a) v_k,
+           g' = sign n.w,  s'_a = w.S_a + d n.(N_k,a v_k)
 
 The force f on the slave is balanced on the master's nodes by
 
@@ -16,7 +17,8 @@ The force f on the slave is balanced on the master's nodes by
 
 Sum f_k = -f since sum N_k,a = 0; and because sum N_k,a x_k = S_a the moments cancel exactly too, for
 r x f = r^a S_a x f + d n x f, whether or not the projection has converged. Without the second term the two
-forces lie a gap apart and every contact would be a couple.
+forces lie a gap apart and every contact would be a couple. Slip is kept as the history s^a and not as the way of
+the place from an anchor: in folds as tight as the contact distance places move where nothing slips.
 
 A node whose place lies outside the master's fabric is not in contact. One that is far away rests for as many
 steps as it needs at the given reach to come near.
@@ -34,13 +36,14 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.friction import TANGENTIAL, coulomb, length
-from ddf.contact.patch import interpolate, spread, weights
-from ddf.contact.quad import quad, store
+from ddf.contact.patch import first_order, interpolate, spread, weights
+from ddf.contact.quad import add_scaled, part, quad, store
 from ddf.elements.tension import FAST
 
 LONGEST_REST = 8
-UNKNOWN = 1.0e30  # gap of a node that has rested
+UNKNOWN = 1.0e30  # gap of a node that rests
 DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost, not pressed
+FARTHEST = 1.0  # a node whose projection lacks more than this, in cells, has been lost too
 NOWHERE = np.int64(2**40)  # first column of an empty span
 
 CHUNK = 64
@@ -52,15 +55,15 @@ STRIDE = np.uint64(4 * CHUNK)
 (
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
-    LAST, AREA, AU, AV,  # gap of the last step, area (0: does not touch), anchor
+    AREA, SU, SV,  # area (0: does not touch), slip of the friction spring
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
     GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
-    NEW_AU, NEW_AV,  # new anchor
-    OLD_RATE, RATE,  # gap's rate in the last step and now
+    WX, WY, WZ, BU, BV,  # w, and n.(N_k,a v_k)
+    OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
-) = (np.uint64(k * CHUNK) for k in range(37))  # fmt: skip
-FIELDS = 37
+) = (np.uint64(k * CHUNK) for k in range(41))  # fmt: skip
+FIELDS = 41
 
 
 def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -152,14 +155,14 @@ def _awake(node, end, rest, place, centre, patch, nodes, w):
 
 
 @njit(**FAST)
-def _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols):
+def _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols):
     """Copy what the slave nodes bring; the surface at their places, quads S, S_1, S_2, into `surface`."""
     stride = FOUR * cols
     for t in range(count):
         node = nodes[t]
         w[X + t], w[Y + t], w[Z + t] = x[0, node], x[1, node], x[2, node]
-        w[LAST + t], w[OLD_RATE + t], w[AREA + t] = place[2, node], place[3, node], area[node]
-        w[AU + t], w[AV + t] = anchor[0, node], anchor[1, node]
+        w[OLD_RATE + t], w[OLD_DRAG + t], w[AREA + t] = place[3, node], place[4, node], area[node]
+        w[SU + t], w[SV + t] = slip[0, node], slip[1, node]
         a, b = weights(w[TU + t]), weights(w[TV + t])
         s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
         store(surface, FOUR * t, s)
@@ -167,6 +170,22 @@ def _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols):
         store(surface, FOUR * t + TWO * STRIDE, sv)
         store(surface, FOUR * t + THREE * STRIDE, suu)
         store(surface, FOUR * t + FOUR * STRIDE, svv)
+
+
+@njit(**FAST)
+def _fetch_rates(w, patch, nodes, count, v, y, cols):
+    """W and n.(N_k,a v_k) of the nodes that touch or just left; y: the master's velocities."""
+    stride = FOUR * cols
+    for t in range(count):
+        if w[AREA + t] == 0.0 and w[OLD_DRAG + t] == 0.0:
+            continue
+        node = nodes[t]
+        m, mu, mv = first_order(y, np.uint64(patch[0, t]), stride, weights(w[TU + t]), weights(w[TV + t]))
+        m = add_scaled(w[DU + t], mu, add_scaled(w[DV + t], mv, m))
+        nx, ny, nz = w[NX + t], w[NY + t], w[NZ + t]
+        w[WX + t], w[WY + t], w[WZ + t] = v[0, node] - part(m, 0), v[1, node] - part(m, 1), v[2, node] - part(m, 2)
+        w[BU + t] = nx * part(mu, 0) + ny * part(mu, 1) + nz * part(mu, 2)
+        w[BV + t] = nx * part(mv, 0) + ny * part(mv, 1) + nz * part(mv, 2)
 
 
 @njit(**FAST)
@@ -189,8 +208,8 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         inv = 1.0 / max(guu * gvv - guv * guv, 1e-30)
         ru = rx * ux + ry * uy + rz * uz
         rv = rx * vx + ry * vy + rz * vz
-        du = min(max((gvv * ru - guv * rv) * inv, -0.5), 0.5)
-        dv = min(max((guu * rv - guv * ru) * inv, -0.5), 0.5)
+        du = (gvv * ru - guv * rv) * inv
+        dv = (guu * rv - guv * ru) * inv
         il = np.sqrt(inv)
         nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
         d = rx * nx + ry * ny + rz * nz
@@ -217,8 +236,8 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
 
 
 @njit(**FAST)
-def _settle(w, nodes, count, place, anchor, rest, cell, deepest, inverse_reach):
-    """New places; the anchors of nodes that do not touch, whose area is set to 0. Returns how many touch."""
+def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
+    """New places; nodes that do not touch get area 0 and lose their slip. Returns how many touch or just left."""
     end_u, end_v = cell.shape[0] - 1.0, cell.shape[1] - 1.0
     touching = 0
     for t in range(count):
@@ -227,14 +246,18 @@ def _settle(w, nodes, count, place, anchor, rest, cell, deepest, inverse_reach):
         place[1, node] = v
         place[2, node] = gap
         place[3, node] = 0.0
+        place[4, node] = 0.0
         touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
+        touches = touches and abs(w[DU + t]) < FARTHEST and abs(w[DV + t]) < FARTHEST
         i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
         if touches and cell[np.uint64(i), np.uint64(j)] > 0.0:
             touching += 1
             continue
+        if w[OLD_DRAG + t] != 0.0:
+            touching += 1
         w[AREA + t] = 0.0
-        anchor[0, node] = u
-        anchor[1, node] = v
+        slip[0, node] = 0.0
+        slip[1, node] = 0.0
         if gap >= 0.0:
             steps = min(np.float64(LONGEST_REST), gap * inverse_reach)
             rest[node] = np.int8(steps)
@@ -245,45 +268,48 @@ def _settle(w, nodes, count, place, anchor, rest, cell, deepest, inverse_reach):
 
 @njit(**FAST)
 def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
-    """Forces and new anchors of all nodes of a chunk; returns the four sums of `layer_forces`."""
-    inverse_dt = 1.0 / dt
+    """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
     for t in range(count):
         ux, uy, uz, vx, vy, vz = _tangents(surface, t)
-        du, dv, gap, last = w[DU + t], w[DV + t], w[GAP + t], w[LAST + t]
         guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
         nx, ny, nz, d = w[NX + t], w[NY + t], w[NZ + t], w[D + t]
+        wx, wy, wz = w[WX + t], w[WY + t], w[WZ + t]
         k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
-        rate = (gap - last) * inverse_dt if last < UNKNOWN else 0.0
-        fn = max(0.0, -k * gap - c * rate)
-        old_u, old_v, u, v = w[AU + t], w[AV + t], w[U + t], w[V + t]
-        tu, tv = u - old_u, v - old_v
-        su, sv = u - w[U0 + t], v - w[V0 + t]
+        rate = sign * (nx * wx + ny * wy + nz * wz)
+        spring = -k * w[GAP + t]
+        fn = max(0.0, spring - c * rate)
+        # slip rate with lower, then upper components; the spring's slip if nothing gave way
+        ru = wx * ux + wy * uy + wz * uz + d * w[BU + t]
+        rv = wx * vx + wy * vy + wz * vz + d * w[BV + t]
+        su, sv = (gvv * ru - guv * rv) * inv, (guu * rv - guv * ru) * inv
         mx, my, mz = su * ux + sv * vx, su * uy + sv * vy, su * uz + sv * vz
+        tu, tv = w[SU + t] + dt * su, w[SV + t] + dt * sv
         px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
-        kt, cs = TANGENTIAL * k, TANGENTIAL * c * inverse_dt
+        kt, cs = TANGENTIAL * k, TANGENTIAL * c
         tx, ty, tz = -kt * px - cs * mx, -kt * py - cs * my, -kt * pz - cs * mz
         limit = mu * fn
         share = coulomb(length(tx, ty, tz), limit)
         tx, ty, tz = tx * share, ty * share, tz * share
         stretch2 = px * px + py * py + pz * pz
-        # where friction slips the anchor follows until the spring alone would carry it
-        slips = share < 1.0
-        keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if slips else 1.0
-        w[NEW_AU + t] = u - keep * tu if slips else old_u
-        w[NEW_AV + t] = v - keep * tv if slips else old_v
-        normal += k * gap * gap
+        # where friction slips the spring keeps what it alone can carry
+        keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if share < 1.0 else 1.0
+        w[SU + t] = keep * tu
+        w[SV + t] = keep * tv
+        normal += k * w[GAP + t] * w[GAP + t]
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
         viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
-        rubbed += kt * stretch2 * keep * (1.0 - keep) - viscous
+        rubbed += kt * stretch2 * keep * (1.0 - keep) - dt * viscous
+        # the viscous force of the last step worked on the mean of the rates before and after it
+        damped -= 0.5 * w[OLD_DRAG + t] * (w[OLD_RATE + t] + rate)
         w[RATE + t] = rate
-        # the damping of the last step worked on the mean of the rates before and after it
-        damped += 0.5 * c * w[OLD_RATE + t] * (w[OLD_RATE + t] + rate)
+        w[DRAG + t] = fn - spring if w[AREA + t] > 0.0 else 0.0
         fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
         cu = d * (tx * ux + ty * uy + tz * uz)
         cv = d * (tx * vx + ty * vy + tz * vz)
         eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
+        du, dv = w[DU + t], w[DV + t]
         w[FX + t], w[FY + t], w[FZ + t] = fx, fy, fz
         w[GX + t], w[GY + t], w[GZ + t] = eu * nx - du * fx, eu * ny - du * fy, eu * nz - du * fz
         w[HX + t], w[HY + t], w[HZ + t] = ev * nx - dv * fx, ev * ny - dv * fy, ev * nz - dv * fz
@@ -291,16 +317,17 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
 
 
 @njit(**FAST)
-def _scatter(w, patch, nodes, count, f, place, anchor, buffer, span, cols):
-    """Add the forces of the nodes that touch to the slave and to the master's buffer; store their anchors."""
+def _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols):
+    """Add the forces of the nodes that touch to the slave and to the master's buffer; store their slips."""
     stride = FOUR * cols
     for t in range(count):
         if w[AREA + t] == 0.0:
             continue
         node = nodes[t]
-        anchor[0, node] = w[NEW_AU + t]
-        anchor[1, node] = w[NEW_AV + t]
+        slip[0, node] = w[SU + t]
+        slip[1, node] = w[SV + t]
         place[3, node] = w[RATE + t]
+        place[4, node] = w[DRAG + t]
         fx, fy, fz = w[FX + t], w[FY + t], w[FZ + t]
         f[0, node] += fx
         f[1, node] += fy
@@ -316,67 +343,48 @@ def _scatter(w, patch, nodes, count, f, place, anchor, buffer, span, cols):
 
 @njit(**FAST)
 def _chunk(
-    w, surface, patch, nodes, count, x, f, area, y, cell, place, anchor, rest, buffer, span, pair, reach, dt, out
-):
+    w, surface, patch, nodes, count, x, v, f, area, y, rates, cell, place, slip, rest, buffer, span, pair, reach, dt,
+    out,
+):  # fmt: skip
     """All passes over one chunk; arguments as in `layer_forces`, grids of nodes and quads made flat."""
     n_rows, n_cols = cell.shape
     cols = np.uint64(n_cols)
-    _fetch(w, surface, patch, nodes, count, x, area, place, anchor, y, cols)
+    _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols)
     _project(w, surface, count, np.float64(n_rows), np.float64(n_cols), pair.sign, pair.offset)
     deepest = -DEEPEST * pair.offset
-    if _settle(w, nodes, count, place, anchor, rest, cell, deepest, 1.0 / reach) > 0:
+    if _settle(w, nodes, count, place, slip, rest, cell, deepest, 1.0 / reach) > 0:
+        _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
         sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, pair.damping, slow, dt)
         for k in range(4):
             out[k] += sums[k]
-        _scatter(w, patch, nodes, count, f, place, anchor, buffer, span, cols)
+        _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols)
 
 
 @njit(**FAST)
 def layer_forces(
-    xs, fs, area, xm, cell, centre, place, anchor, rest, buffer, span, pair, reach, dt, low, high, scratch, out
+    xs, vs, fs, area, xm, vm, cell, centre, place, slip, rest, buffer, span, pair, reach, dt, low, high, scratch, out
 ):
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
-    xs, fs (3, n, m) slave; xm (N, M, 4) master as from `pack_rows`; area (n, m) [mm2]; cell (N, M) area of the
-    master's cells; centre (N, M, 2) from `patch_centres`; place (4, n, m): (u, v), gap and its rate of the last step,
-    anchor (2, n, m), both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed;
-    buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a step [mm];
-    scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy now,
-    friction and damping loss of this step [N mm].
+    xs, vs, fs (3, n, m) slave; xm, vm (N, M, 4) master as from `pack_rows`; area (n, m) [mm2]; cell (N, M) area of
+    the master's cells; centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
+    of the last step; slip (2, n, m) [grid units]; both updated; rest (n, m) int8: steps to rest, negative for nodes
+    that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
+    step [mm]; scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
+    now, friction and damping loss of this step [N mm].
     """
     size = xs.shape[1] * xs.shape[2]
-    x, f, place, anchor = (
-        xs.reshape((3, size)),
-        fs.reshape((3, size)),
-        place.reshape((4, size)),
-        anchor.reshape((2, size)),
-    )
+    x, v, f = xs.reshape((3, size)), vs.reshape((3, size)), fs.reshape((3, size))
+    place, slip = place.reshape((5, size)), slip.reshape((2, size))
     rest, area = rest.reshape(size), area.reshape(size)
-    y, forces = xm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
+    y, rates, forces = xm.reshape(4 * cell.size), vm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
     w, surface, patch, nodes = scratch
     node, end = np.uint64(low * xs.shape[2]), np.uint64(high * xs.shape[2])
     while node < end:
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w,
-                surface,
-                patch,
-                nodes,
-                t,
-                x,
-                f,
-                area,
-                y,
-                cell,
-                place,
-                anchor,
-                rest,
-                forces,
-                span,
-                pair,
-                reach,
-                dt,
-                out,
-            )
+                w, surface, patch, nodes, t, x, v, f, area, y, rates, cell, place, slip, rest, forces, span, pair,
+                reach, dt, out,
+            )  # fmt: skip

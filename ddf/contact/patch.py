@@ -62,6 +62,19 @@ def interpolate(y, k, stride, a, b):
 
 
 @njit(**FAST)
+def first_order(y, k, stride, a, b):
+    """Value and first derivatives only, of any nodal quads; arguments as in `interpolate`."""
+    r0, s0, _ = _along_row(y, k, b)
+    r1, s1, _ = _along_row(y, k + stride, b)
+    r2, s2, _ = _along_row(y, k + stride + stride, b)
+    return (
+        _mix(a[0], a[1], a[2], r0, r1, r2),
+        _mix(a[3], a[4], a[5], r0, r1, r2),
+        _mix(a[0], a[1], a[2], s0, s1, s2),
+    )
+
+
+@njit(**FAST)
 def _add_row(buffer, k, b, p, q):
     """Add  b p + b' q  to the three nodes of a row."""
     store(buffer, k, add_scaled(b[0], p, add_scaled(b[3], q, load(buffer, k))))

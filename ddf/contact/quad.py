@@ -92,3 +92,13 @@ def add_scaled(typing, number, value, rest):
         return builder.fadd(builder.fmul(_splat(builder, args[0]), args[1]), args[2])
 
     return QUAD(types.float64, QUAD, QUAD), build
+
+
+@intrinsic
+def part(typing, value, index):
+    """Component 0, 1 or 2 of a quad."""
+
+    def build(context, builder, signature, args):
+        return builder.extract_element(args[0], args[1])
+
+    return types.float64(QUAD, types.int64), build

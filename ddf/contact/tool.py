@@ -1,15 +1,24 @@
-"""Contact of a diaphragm with the rigid tool and the platform around it.
+"""Contact of a diaphragm with the rigid tool and the platform around it, implicit in time.
 
 Each cell carries 2 x 2 contact points at its quarters, so that a ridge cannot pass between nodes. A point at
 p (tool frame: it moves with the tool) with signed distance d(p) and gradient n is pushed by
 
-    K A (offset - d) n - C A n.v n   where d < offset,   likewise by the platform (d = z, n = e_z),
+    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset,   likewise by the platform (d = z, n = e_z),
 
-and held by Coulomb friction on a spring to its anchor. K [N/mm3], A a quarter of the cell's area. The force
-goes to the four nodes with the point's bilinear weights. The last row of a block of cells belongs to the
-next block: it goes to `carry`, which is added later in a fixed order.
+never pulled, and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A a quarter
+of the cell's area; dt K v is the spring's force at the place that the point is moving to. The force goes to the
+four nodes with the point's bilinear weights N_i, and with it the tensor
 
-A cell that was found far away sleeps for as many steps as it needs at the given reach to come near.
+    J_i = N_i (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
+
+A node of mass m that touches is then accelerated by  (m + J) a = F,  F the sum of all its forces: one step of
+backward Euler in which the consistent stiffness matrix is replaced by its row sums. These are no smaller (all its
+entries are positive), so the tool, however stiff, sets no limit to the step: with an explicit stiffness K_e besides,
+leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
+forces is dissipation, booked with the mid-step velocity.
+
+The last row of a block of cells belongs to the next block: it goes to `carry`, which is added later in a fixed
+order. A cell that was found far away sleeps for as many steps as it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -23,35 +32,47 @@ from ddf.elements.tension import FAST
 FREE = 1.0e30
 LONGEST_SLEEP = 16
 
+#: rows of `press`: tensor J (xx, yy, zz, xy, xz, yz) [tonne] and viscous force of the tool [N] on each node
+PRESS = 9
+CARRY = 3 + PRESS  # force and `press` of the row that belongs to the next block
+
 
 @njit(**FAST)
-def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out):
-    """Force (fx, fy, fz) on one contact point and its distance; updates its anchor and the energies.
+def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out, give):
+    """Force, tensor and viscous force of one contact point, into give (12,); returns its distance.
 
-    p, v: position and velocity relative to the tool; out (4,): normal spring, tangential spring, friction and
-    damping loss [N mm].
+    p, v: position and velocity relative to the tool; k [N/mm], c [N s/mm]; updates its anchor and the energies
+    out (3,): normal spring, tangential spring, friction loss [N mm].
     """
     px, py, pz = p
     d1, nx, ny, nz = sample(tool, origin, spacing, px, py, pz)
     near = min(d1, pz) - offset
     if near >= 0.0:
         anchor[0] = FREE
-        return 0.0, 0.0, 0.0, near
-    slow = 1.0 / (1.0 + 0.5 * c * dt / mass)  # damping acts on mid-step velocities
-    c *= slow
+        return near
+    c += dt * k
+    inertia = dt * c
     fx = fy = fz = normal = 0.0
+    bx = by = bz = 0.0  # viscous part
+    jxx = jyy = jzz = jxy = jxz = jyz = 0.0
     if d1 < offset:
-        rate = nx * v[0] + ny * v[1] + nz * v[2]
-        n1 = max(0.0, k * (offset - d1) - c * rate)
-        out[0] += 0.5 * k * (offset - d1) ** 2
-        out[3] -= dt * (n1 - k * (offset - d1)) * rate * slow
+        spring = k * (offset - d1)
+        n1 = max(0.0, spring - c * (nx * v[0] + ny * v[1] + nz * v[2]))
+        out[0] += 0.5 * spring * (offset - d1)
         fx, fy, fz, normal = n1 * nx, n1 * ny, n1 * nz, n1
+        bx, by, bz = (n1 - spring) * nx, (n1 - spring) * ny, (n1 - spring) * nz
+        if n1 > 0.0:
+            jxx, jyy, jzz = inertia * nx * nx, inertia * ny * ny, inertia * nz * nz
+            jxy, jxz, jyz = inertia * nx * ny, inertia * nx * nz, inertia * ny * nz
     if pz < offset:
-        n2 = max(0.0, k * (offset - pz) - c * v[2])
-        out[0] += 0.5 * k * (offset - pz) ** 2
-        out[3] -= dt * (n2 - k * (offset - pz)) * v[2] * slow
+        spring = k * (offset - pz)
+        n2 = max(0.0, spring - c * v[2])
+        out[0] += 0.5 * spring * (offset - pz)
         fz += n2
+        bz += n2 - spring
         normal += n2
+        if n2 > 0.0:
+            jzz += inertia
         if pz < d1:
             nx, ny, nz = 0.0, 0.0, 1.0
     if anchor[0] >= FREE:
@@ -72,23 +93,45 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mass, mu, dt, anchor, out)
         keep = min(1.0, limit / max(k * stretch, 1e-30))
         anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
     out[1] += 0.5 * k * (keep * stretch) ** 2
+    out[2] += k * stretch * stretch * keep * (1.0 - keep)
     held = k * keep
-    viscous = (tx + held * sx) * vx + (ty + held * sy) * vy + (tz + held * sz) * vz
-    out[2] += k * stretch * stretch * keep * (1.0 - keep) - dt * viscous
-    return fx + tx, fy + ty, fz + tz, near
+    inertia *= TANGENTIAL * share
+    give[0], give[1], give[2] = fx + tx, fy + ty, fz + tz
+    give[3], give[4], give[5] = (
+        jxx + inertia * (1.0 - nx * nx),
+        jyy + inertia * (1.0 - ny * ny),
+        jzz + inertia * (1.0 - nz * nz),
+    )
+    give[6], give[7], give[8] = jxy - inertia * nx * ny, jxz - inertia * nx * nz, jyz - inertia * ny * nz
+    give[9], give[10], give[11] = bx + tx + held * sx, by + ty + held * sy, bz + tz + held * sz
+    return near
+
+
+@njit(inline="always")
+def _put(f, press, j, weight, give):
+    """Add a point's share to the node in column j of a row: f (3, m), press (9, m)."""
+    for c in range(3):
+        f[c, j] += weight * give[c]
+    for c in range(PRESS):
+        press[c, j] += weight * give[3 + c]
 
 
 @njit(**FAST)
-def tool_forces(x, v, f, carry, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors, sleep, low, high, out):
+def tool_forces(
+    x, v, f, press, pressed, carry, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors, sleep, low, high,
+    out, give,
+):  # fmt: skip
     """Add the forces of the contact points of cell rows low..high-1; returns the tool's work [N mm].
 
-    x, v, f (3, n, m); carry (3, m + 2); dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping,
-    areal mass, friction); motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
-    anchors (n-1, m-1, 4, 3); sleep (n-1, m-1) int16; out (4,) as in `_point`.
+    x, v, f (3, n, m); press (9, n, m) and carry (12, m + 2): see PRESS, CARRY; pressed (n,) bool: rows of press in use,
+    and whether carry is, in the returned pair; dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping,
+    friction); motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
+    anchors (n-1, m-1, 4, 3); sleep (n-1, m-1) int16; out (3,) as in `_point`; give (12,) scratch.
     """
-    offset, stiffness, damping, mass, mu = law
+    offset, stiffness, damping, mu = law
     z, speed = motion
     work = 0.0
+    carried = False
     for i in range(low, min(high, x.shape[1] - 1)):
         for j in range(x.shape[2] - 1):
             if sleep[i, j] > 0:
@@ -110,38 +153,59 @@ def tool_forces(x, v, f, carry, dx, dy, tool, origin, spacing, law, motion, reac
                     w00 * v[1, i, j] + w10 * v[1, i + 1, j] + w01 * v[1, i, j + 1] + w11 * v[1, i + 1, j + 1],
                     w00 * v[2, i, j] + w10 * v[2, i + 1, j] + w01 * v[2, i, j + 1] + w11 * v[2, i + 1, j + 1] - speed,
                 )
-                fx, fy, fz, near = _point(
-                    p,
-                    u,
-                    tool,
-                    origin,
-                    spacing,
-                    offset,
-                    stiffness * area,
-                    damping * area,
-                    mass * area,
-                    mu,
-                    dt,
-                    anchors[i, j, q],
-                    out,
-                )
+                near = _point(
+                    p, u, tool, origin, spacing, offset, stiffness * area, damping * area, mu, dt, anchors[i, j, q],
+                    out, give,
+                )  # fmt: skip
                 nearest = min(nearest, near)
                 if near >= 0.0:
                     continue
-                work += fz * speed * dt
-                f[0, i, j] += w00 * fx
-                f[1, i, j] += w00 * fy
-                f[2, i, j] += w00 * fz
-                f[0, i, j + 1] += w01 * fx
-                f[1, i, j + 1] += w01 * fy
-                f[2, i, j + 1] += w01 * fz
-                up = carry[:, 0 : x.shape[2]] if i == high - 1 else f[:, i + 1, :]
-                up[0, j] += w10 * fx
-                up[1, j] += w10 * fy
-                up[2, j] += w10 * fz
-                up[0, j + 1] += w11 * fx
-                up[1, j + 1] += w11 * fy
-                up[2, j + 1] += w11 * fz
+                work += give[2] * speed * dt
+                pressed[i] = True
+                _put(f[:, i], press[:, i], j, w00, give)
+                _put(f[:, i], press[:, i], j + 1, w01, give)
+                if i < high - 1:
+                    pressed[i + 1] = True
+                    _put(f[:, i + 1], press[:, i + 1], j, w10, give)
+                    _put(f[:, i + 1], press[:, i + 1], j + 1, w11, give)
+                else:
+                    carried = True
+                    _put(carry[:3], carry[3:], j, w10, give)
+                    _put(carry[:3], carry[3:], j + 1, w11, give)
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
-    return work
+    return work, carried
+
+
+@njit(**FAST)
+def settle_row(v, f, press, mass, speed, dt):
+    """Forces of a row as the implicit tool lets them act: f <- m (m + J)^-1 f; press is cleared.
+
+    v, f (3, m); press (9, m); mass (m,), 0 where held. Returns the tool's further work and what was dissipated
+    [N mm]: the viscous force and the change of f, times the mid-step velocity relative to the tool.
+    """
+    work = lost = 0.0
+    for j in range(mass.shape[0]):
+        m = mass[j]
+        if m > 0.0 and press[0, j] + press[1, j] + press[2, j] > 0.0:
+            a, b, c = m + press[0, j], m + press[1, j], m + press[2, j]
+            d, e, g = press[3, j], press[4, j], press[5, j]  # xy, xz, yz
+            aa, bb, cc = b * c - g * g, a * c - e * e, a * b - d * d
+            dd, ee, gg = e * g - d * c, d * g - e * b, d * e - a * g
+            r = m / (a * aa + d * dd + e * ee)
+            x, y, z = f[0, j], f[1, j], f[2, j]
+            fx = r * (aa * x + dd * y + ee * z)
+            fy = r * (dd * x + bb * y + gg * z)
+            fz = r * (ee * x + gg * y + cc * z)
+            f[0, j], f[1, j], f[2, j] = fx, fy, fz
+            h = 0.5 * dt / m
+            x, y, z = fx - x, fy - y, fz - z  # what the tensor took
+            work += z * speed * dt
+            lost -= dt * (
+                (x + press[6, j]) * (v[0, j] + h * fx)
+                + (y + press[7, j]) * (v[1, j] + h * fy)
+                + (z + press[8, j]) * (v[2, j] + h * fz - speed)
+            )
+        for k in range(PRESS):
+            press[k, j] = 0.0
+    return work, lost

@@ -4,12 +4,14 @@ Step n, of length dt (leapfrog: v lives half a step behind x):
 
     1  f = shear + bending + diaphragms + pressure + contact + tool  at x_n, v_(n-1/2)     blocks of rows
     2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
-    3  plies: v <- step of the tension along family 1 (`elements.tension`)                  fibre lines
-    4  plies: v <- the same along family 2                                                  fibre lines
-    5  plies: x <- x + dt v                                                                 blocks of rows
+    3  plies: v and kept tensions corrected along family 1 (`elements.tension`)             fibre lines
+    4  plies: the same along family 2                                                       fibre lines
+    5, 6  as 3, 4, with the string's step
+    7  plies: x <- x + dt v                                                                 blocks of rows
 
-3 and 4 change places every other step. Each phase is one parallel region; blocks and bundles of lines are
-fixed, so the bits of the result do not depend on the number of threads.
+2 ends, for plies, with the impulses of the tensions kept from the last step. The families change places every other
+step. Each phase is one parallel region; blocks and bundles of lines are fixed, so the bits of the result do not
+depend on the number of threads.
 
 Two other ways were built and measured before. Small inner steps of the tension between impulses of the other
 forces (r-RESPA), 14 of them: a flat clamped stack at 5 mm lost fifty times the work done on it to fibre damping
@@ -25,13 +27,14 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
-from ddf.contact.tool import tool_forces
+from ddf.contact.tool import PRESS, settle_row, tool_forces
 from ddf.dynamics.team import barrier, draw
 from ddf.elements.bending import bending_forces
+from ddf.elements.fold import fold_forces, fold_lattice_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
-from ddf.elements.tension import FAST, LINES, pull_lines, pull_rows
+from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
 from ddf.model import (
     CONTACT_DAMPING,
     DAMPING,
@@ -61,17 +64,22 @@ class Work(NamedTuple):
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
     packed: np.ndarray  # (4 N,) positions as (x, y, z, 0)
+    rates: np.ndarray  # (4 N,) velocities likewise
     buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
     chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
     sums: np.ndarray  # (members, 4)
-    carry: np.ndarray  # (blocks, 3, widest + 2) row of the next block
+    carry: np.ndarray  # (blocks, CARRY, widest + 2) row of the next block, from the tool's contact
+    carried: np.ndarray  # (blocks,) bool: whether it holds anything
+    press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
+    pressed: np.ndarray  # (n,) bool: rows of press in use
+    give: np.ndarray  # (members, CARRY)
     sleep: np.ndarray  # (n-1, m-1) int16: steps that a cell of the tool's sheet sleeps
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
     bundles2: np.ndarray  # (k, 3): sheet, first and last+1 row: lines of family 2
     lines: np.ndarray  # (members, (6 (longest + 1) + 2) * LINES)
-    turned: np.ndarray  # (members, 8 * longest * LINES)
+    turned: np.ndarray  # (members, 9 * longest * LINES)
 
 
 @njit(**FAST)
@@ -99,12 +107,18 @@ def _internal(model, state, row, b, scratch):
         shear_forces(x, f, scalars(model.cell, sheet), model.shear_tables[sheet.shear], low, high, scratch)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
         bending_forces(x, f, fours(model.weight, sheet), triple1, triple2, sheet, low, high, scratch)
+        if sheet.fold_radius > 0.0:
+            fold_lattice_forces(
+                x, f, triple1, triple2, sheet.a1, sheet.a2, sheet.hourglass, sheet.fold_radius, low, high, w
+            )
     else:
         dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
         rubber_forces(x, f, dx, dy, sheet, model.ogden, row[sheet.face], low, high, w)
         if sheet.rigidity > 0.0:
             plate_forces(x, f, dx, dy, sheet.rigidity, low, high, w)
+        if sheet.fold_radius > 0.0:
+            fold_forces(x, f, dx, dy, sheet.hourglass, sheet.fold_radius, low, high, w)
 
 
 @njit(inline="always")
@@ -128,18 +142,19 @@ def _buffer(work, model, pair, index):
 
 
 @njit(inline="always")
-def _packed(work, sheet):
-    """Sheet's packed positions as (rows, cols, 4)."""
+def _packed(pool, sheet):
+    """Sheet's slice of a pool of quads as (rows, cols, 4)."""
     n = sheet.rows * sheet.cols
-    return work.packed[4 * sheet.node : 4 * (sheet.node + n)].reshape((sheet.rows, sheet.cols, 4))
+    return pool[4 * sheet.node : 4 * (sheet.node + n)].reshape((sheet.rows, sheet.cols, 4))
 
 
 @njit(**FAST)
 def _pack(model, state, work, b):
-    """Pack the positions of a block's rows for contact."""
+    """Pack the positions and velocities of a block's rows for contact."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    pack_rows(vectors(state.x, sheet), _packed(work, sheet), block.low, block.high)
+    pack_rows(vectors(state.x, sheet), _packed(work.packed, sheet), block.low, block.high)
+    pack_rows(vectors(state.v, sheet), _packed(work.rates, sheet), block.low, block.high)
 
 
 @njit(**FAST)
@@ -160,13 +175,13 @@ def _layers(model, state, work, member, b, dt, reach):
         n = slave.rows * slave.cols
         first = pair.first
         layer_forces(
-            vectors(state.x, slave), vectors(state.f, slave), scalars(model.area, slave),
-            _packed(work, master), scalars(model.cell, master),
+            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), scalars(model.area, slave),
+            _packed(work.packed, master), _packed(work.rates, master), scalars(model.cell, master),
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
             ),
-            state.place[4 * first : 4 * (first + n)].reshape((4, slave.rows, slave.cols)),
-            state.anchor[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols)),
+            state.place[5 * first : 5 * (first + n)].reshape((5, slave.rows, slave.cols)),
+            state.slip[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols)),
             work.rest[first : first + n].reshape((slave.rows, slave.cols)),
             buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
         )  # fmt: skip
@@ -184,24 +199,25 @@ def _tool(model, state, work, member, row, b, dt, reach):
     dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
     dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
     carry = work.carry[b]
-    carry[:] = 0.0
+    if work.carried[b]:
+        carry[:] = 0.0
     out = work.sums[member]
     out[:] = 0.0
-    law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_mass, model.tool_friction)
-    done = tool_forces(
-        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), carry, dx, dy,
+    law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
+    done, work.carried[b] = tool_forces(
+        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet),
+        work.press.reshape((PRESS, sheet.rows, sheet.cols)), work.pressed, carry, dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
-        state.tool_anchor, work.sleep, block.low, block.high, out,
+        state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]
     state.ledger[b, TOOL_FRICTION] += out[2]
-    state.ledger[b, TOOL_DAMPING] += out[3]
     state.ledger[b, TOOL_WORK] += done
 
 
 @njit(**FAST)
-def _collect(model, state, work, b):
+def _collect(model, state, work, row, b):
     """Add what other blocks put on this block's rows: master buffers, then the tool's carried row."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
@@ -219,10 +235,31 @@ def _collect(model, state, work, b):
                 if j1 > j0:
                     collect_row(f, buffer, i, j0, j1)
             index += 1
-    if block.sheet == model.tool_sheet and block.low > 0:
-        for c in range(3):
-            for j in range(sheet.cols):
-                f[c, block.low, j] += work.carry[b - 1, c, j]
+    if block.sheet == model.tool_sheet:
+        _settle_tool(model, state, work, row, b)
+
+
+@njit(**FAST)
+def _settle_tool(model, state, work, row, b):
+    """Add what the block before carried over; then let the implicit tool act on the sum of all forces."""
+    block = model.blocks[b]
+    sheet = model.sheets[block.sheet]
+    f, v, mass = vectors(state.f, sheet), vectors(state.v, sheet), scalars(model.mass, sheet)
+    press = work.press.reshape((PRESS, sheet.rows, sheet.cols))
+    if block.low > 0 and work.carried[b - 1]:
+        carry = work.carry[b - 1]
+        for j in range(sheet.cols):
+            for c in range(3):
+                f[c, block.low, j] += carry[c, j]
+            for c in range(PRESS):
+                press[c, block.low, j] += carry[3 + c, j]
+        work.pressed[block.low] = True
+    for i in range(block.low, block.high):
+        if work.pressed[i]:
+            done, lost = settle_row(v[:, i], f[:, i], press[:, i], mass[i], row[TOOL_SPEED], model.dt)
+            state.ledger[b, TOOL_WORK] += done
+            state.ledger[b, TOOL_DAMPING] += lost
+            work.pressed[i] = False
 
 
 @njit(**FAST)
@@ -253,7 +290,7 @@ def _drift_row(x, v, f, mass, dt):
 
 
 @njit(**FAST)
-def _kick(model, state, b, damping):
+def _kick(model, state, b, damping, scratch):
     """Kick a block's rows by its forces; diaphragms move on."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
@@ -271,6 +308,10 @@ def _kick(model, state, b, damping):
     state.ledger[b, MASS_DAMPING] += 0.5 * square * (1.0 - damping * damping)
     if sheet.kind == PLY:
         state.ledger[b, FIBRE_WORK] -= 0.5 * damping * (damping * square + dt * power)
+        kept1, kept2 = scalars(state.tension1, sheet), scalars(state.tension2, sheet)
+        q = scratch[: 3 * sheet.cols].reshape((3, sheet.cols))
+        for i in range(block.low, block.high):
+            pull_kept(x, v, inverse, kept1, kept2, KEEP * dt, i, q)
 
 
 @njit(**FAST)
@@ -293,30 +334,33 @@ def _drift(model, state, b):
 
 
 @njit(**FAST)
-def _pull(model, state, work, member, family, k, low, high):
-    """Implicit step of fibre tension along one bundle of lines of a family."""
+def _pull(model, state, work, member, family, sweep, k, low, high):
+    """Correct the fibre tension along one bundle of lines of a family; sweep 0 or 1."""
     sheet = model.sheets[k]
     x, v = vectors(state.x, sheet), vectors(state.v, sheet)
     inverse = scalars(model.inverse_mass, sheet)
     dt = model.dt
+    keep = KEEP if sweep == 0 else 1.0
     rows = 6 * ((sheet.rows if family == 1 else sheet.cols) + 1) + 2
     lines = work.lines[member, : rows * LINES].reshape((rows, LINES))
     if family == 1:
-        law = (1.0 / sheet.a1, dt * dt * sheet.eh1 / sheet.a1, 0.5 * dt * sheet.eh1)
-        pull_lines(x, v, inverse, scalars(model.bar1, sheet), law, low, high, lines)
+        law = (1.0 / sheet.a1, dt * dt * sheet.eh1 / sheet.a1, 0.5 * dt * sheet.eh1, dt * dt / sheet.a1, dt)
+        bar, kept = scalars(model.bar1, sheet), scalars(state.tension1, sheet)
+        pull_lines(x, v, inverse, bar, kept, law, keep, sweep == 1, low, high, lines)
     else:
-        law = (1.0 / sheet.a2, dt * dt * sheet.eh2 / sheet.a2, 0.5 * dt * sheet.eh2)
-        turned = work.turned[member, : 8 * sheet.cols * LINES].reshape((8, sheet.cols, LINES))
-        pull_rows(x, v, inverse, scalars(model.bar2, sheet), law, low, high, turned, lines)
+        law = (1.0 / sheet.a2, dt * dt * sheet.eh2 / sheet.a2, 0.5 * dt * sheet.eh2, dt * dt / sheet.a2, dt)
+        bar, kept = scalars(model.bar2, sheet), scalars(state.tension2, sheet)
+        turned = work.turned[member, : 9 * sheet.cols * LINES].reshape((9, sheet.cols, LINES))
+        pull_rows(x, v, inverse, bar, kept, law, keep, sweep == 1, low, high, turned, lines)
 
 
 @njit(**FAST)
-def _pull_family(model, state, work, sync, base, member, family):
+def _pull_family(model, state, work, sync, base, member, family, sweep):
     """All bundles of a family, shared among the members."""
     bundles = work.bundles1 if family == 1 else work.bundles2
     t = draw(sync, base)
     while t < bundles.shape[0]:
-        _pull(model, state, work, member, family, bundles[t, 0], bundles[t, 1], bundles[t, 2])
+        _pull(model, state, work, member, family, sweep, bundles[t, 0], bundles[t, 1], bundles[t, 2])
         t = draw(sync, base)
 
 
@@ -347,16 +391,17 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:
-            _collect(model, state, work, b)
-            _kick(model, state, b, row[DAMPING])
+            _collect(model, state, work, row, b)
+            _kick(model, state, b, row[DAMPING], work.scratch[member])
             if model.sheets[model.blocks[b].sheet].kind != PLY:
                 _pack(model, state, work, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
         early = 1 + (first + n) % 2
-        for family in (early, 3 - early):
-            _pull_family(model, state, work, sync, base, member, family)
+        for turn in range(4):
+            family = early if turn % 2 == 0 else 3 - early
+            _pull_family(model, state, work, sync, base, member, family, turn // 2)
             base += (work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]) + members
             barrier(sync, members)
         b = draw(sync, base)

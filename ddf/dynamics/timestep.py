@@ -2,8 +2,7 @@
 
 All bounds are per area: a sheet of areal mass m with several stiffnesses has omega^2 <= the sum of theirs.
 Explicit steps with damping that lags half a step are stable for  omega dt <= 2 (sqrt(1 + z^2) - z),  z the
-damping ratio at omega. Fibre tension is integrated implicitly and sets no limit along the fibres; across them
-it acts like a string's, with the tension that the step allows for.
+damping ratio at omega. Fibre tension and the contact with the tool are integrated implicitly and set no limit.
 """
 
 from __future__ import annotations
@@ -17,29 +16,29 @@ def damped_limit(omega: float, ratio: float) -> float:
 
 
 def ply_omega2(
-    shear: float, bend: tuple[float, float], tension: float, spacing: tuple[float, float], contact: float, mass: float
+    shear: float, bend: tuple[float, float], spacing: tuple[float, float], contact: float, mass: float
 ) -> float:
     """Bound of omega^2 of a ply's explicit forces.
 
-    Shear and tension across the fibres 4 (N_s' + T)(1/a1^2 + 1/a2^2)/m, T [N/mm]; bending
-    16 (D1/a1^4 + D2/a2^4)/m; contact 2 K/m with K the sum of the contact stiffnesses [N/mm3] on its two faces.
+    Shear 4 N_s' (1/a1^2 + 1/a2^2)/m; bending 16 (D1/a1^4 + D2/a2^4)/m; contact 2 K/m with K the sum of the
+    contact stiffnesses [N/mm3] on its two faces.
     """
     a1, a2 = spacing
-    stretch = 4.0 * (shear + tension) * (1 / a1**2 + 1 / a2**2)
+    stretch = 4.0 * shear * (1 / a1**2 + 1 / a2**2)
     bending = 16.0 * (bend[0] / a1**4 + bend[1] / a2**4)
     return (stretch + bending + 2.0 * contact) / mass
 
 
 def diaphragm_omega2(
-    mu: float, thickness: float, rigidity: float, mass: float, element: float, contact: float, tool: float
+    mu: float, thickness: float, rigidity: float, mass: float, element: float, contact: float
 ) -> float:
     """Bound of omega^2 of a diaphragm with square elements of the given size.
 
     Membrane 16 mu t (2/a^2)/m (the largest plane-stress modulus of a rubber is 4 mu at rest), plate
-    16 D (2/a^2)^2/m, contact 2 K/m, tool K/m.
+    16 D (2/a^2)^2/m, contact 2 K/m.
     """
     q = 2.0 / element**2
-    return (16.0 * mu * thickness * q + 16.0 * rigidity * q * q + 2.0 * contact + tool) / mass
+    return (16.0 * mu * thickness * q + 16.0 * rigidity * q * q + 2.0 * contact) / mass
 
 
 def contact_damping(fraction: float, stiffness: float, mass_a: float, mass_b: float) -> float:

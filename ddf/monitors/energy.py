@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddf.elements.bending import bending_energy
+from ddf.elements.fold import fold_energy, fold_lattice_energy
 from ddf.elements.plate import plate_energy
 from ddf.elements.rubber import rubber_energy
 from ddf.elements.shear import shear_energy
@@ -89,16 +90,22 @@ def sheet_strain(model: Model, state: State, k: int) -> dict[str, float]:
     if sheet["kind"] == PLY:
         first, second = tension_energy(x, pool(model.bar1), pool(model.bar2), sheet)
         bend = bending_energy(x, pool(model.bar1), pool(model.bar2), pool(model.triple1), pool(model.triple2), sheet)
+        folding, _ = fold_lattice_energy(
+            x, pool(model.triple1), pool(model.triple2), (float(sheet["a1"]), float(sheet["a2"])),
+            float(sheet["hourglass"]), float(sheet["fold_radius"]),
+        )  # fmt: skip
         return {
             "fibre_tension": first + second,
             "shear": shear_energy(x, pool(model.cell), model.shear_tables[sheet["shear"]]),
             "bending": bend,
+            "folding": folding,
         }
     a, n, m = int(sheet["line"]), int(sheet["rows"]), int(sheet["cols"])
     dx, dy = model.lines[a : a + n - 1], model.lines[a + n - 1 : a + n + m - 2]
     membrane, hourglass, twist = rubber_energy(x, dx, dy, sheet, model.ogden)
     bending = twist + plate_energy(x, dx, dy, float(sheet["rigidity"]))
-    return {"membrane": membrane, "hourglass": hourglass, "bending": bending}
+    folding, _ = fold_energy(x, dx, dy, float(sheet["hourglass"]), float(sheet["fold_radius"]))
+    return {"membrane": membrane, "hourglass": hourglass, "bending": bending, "folding": folding}
 
 
 def kinetic_energy(model: Model, state: State, k: int) -> float:

@@ -42,8 +42,9 @@ class Ply:
         self.table = shear_table(*shear_samples("monotone", 0.5, 0.002, [0.4576, -7.394, 36.36, -59.31, 32.37], None))
         self.work = np.zeros(max(bending.SCRATCH, shear.SCRATCH))
         self.weight = bending.tangent_weights(self.bar1, self.bar2)
-        self.lines, self.turned = np.zeros((6 * (n + 1) + 2, LINES)), np.zeros((8, n, LINES))
-        self.law = (1.0, 1e-10 * 20_000.0, 0.5e-5 * 20_000.0)
+        self.lines, self.turned = np.zeros((6 * (n + 1) + 2, LINES)), np.zeros((9, n, LINES))
+        self.kept = np.zeros((n, n))
+        self.law = (1.0, 1e-10 * 20_000.0, 0.5e-5 * 20_000.0, 1e-10, 1e-5)
 
     def shear(self):
         shear_forces(self.x, self.f, self.cell, self.table, 0, self.n, self.work)
@@ -52,7 +53,7 @@ class Ply:
         bending_forces(self.x, self.f, self.weight, self.triple1, self.triple2, self.sheet, 0, self.n, self.work)
 
     def tension(self):
-        _pull_all(self.x, self.v, self.inverse, self.bar1, self.bar2, self.law, self.turned, self.lines)
+        _pull_all(self.x, self.v, self.inverse, self.bar1, self.bar2, self.kept, self.law, self.turned, self.lines)
 
     def all(self):
         self.shear()
@@ -61,11 +62,13 @@ class Ply:
 
 
 @njit
-def _pull_all(x, v, inverse, bar1, bar2, law, turned, lines):
-    for a in range(0, x.shape[2], LINES):
-        pull_lines(x, v, inverse, bar1, law, a, min(a + LINES, x.shape[2]), lines)
-    for a in range(0, x.shape[1], LINES):
-        pull_rows(x, v, inverse, bar2, law, a, min(a + LINES, x.shape[1]), turned, lines)
+def _pull_all(x, v, inverse, bar1, bar2, kept, law, turned, lines):
+    """Both families twice, as in a step."""
+    for sweep in range(2):
+        for a in range(0, x.shape[2], LINES):
+            pull_lines(x, v, inverse, bar1, kept, law, 1.0, sweep == 1, a, min(a + LINES, x.shape[2]), lines)
+        for a in range(0, x.shape[1], LINES):
+            pull_rows(x, v, inverse, bar2, kept, law, 1.0, sweep == 1, a, min(a + LINES, x.shape[1]), turned, lines)
 
 
 def _note(benchmark, count, unit="node"):
@@ -113,8 +116,8 @@ def test_contact_of_a_pair(benchmark, state):
         pair[key] = value
     fs, area, cell = np.zeros_like(xs), np.full((n, n), 4.0), np.ones((m, m))
     centre = patch_centres(np.ones((m, m), bool))
-    place = np.concatenate([xs[:2] / 2.5, np.full((1, n, n), UNKNOWN), np.zeros((1, n, n))])
-    anchor, buffer, out = place[:2].copy(), np.zeros((m, m, 4)), np.zeros(4)
+    place = np.concatenate([xs[:2] / 2.5, np.full((1, n, n), UNKNOWN), np.zeros((2, n, n))])
+    still, slip, buffer, out = np.zeros_like(xs), np.zeros((2, n, n)), np.zeros((m, m, 4)), np.zeros(4)
     span, scratch = np.tile(np.array([NOWHERE, 0]), (m, 1)), tuple(part[0] for part in chunk_scratch(1))
     packed = np.ascontiguousarray(np.moveaxis(np.concatenate([xm, np.zeros((1, m, m))]), 0, -1))
     reach = 1e6 if state != "resting" else 1e-6
@@ -122,25 +125,9 @@ def test_contact_of_a_pair(benchmark, state):
 
     def run():
         layer_forces(
-            xs,
-            fs,
-            area,
-            packed,
-            cell,
-            centre,
-            place,
-            anchor,
-            rest,
-            buffer,
-            span,
-            pair[0],
-            reach,
-            1e-5,
-            0,
-            n,
-            scratch,
-            out,
-        )
+            xs, still, fs, area, packed, np.zeros_like(packed), cell, centre, place, slip, rest, buffer, span, pair[0],
+            reach, 1e-5, 0, n, scratch, out,
+        )  # fmt: skip
 
     run()
     assert fs.any() == (state == "in-contact")

@@ -6,7 +6,7 @@ import numpy as np
 
 from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces, touched
 from ddf.contact.patch import patch_centres
-from ddf.contact.tool import FREE, tool_forces
+from ddf.contact.tool import CARRY, FREE, PRESS, tool_forces
 from ddf.model import PAIR
 
 
@@ -24,7 +24,7 @@ def packed(x):
 
 
 class Layers:
-    """Slave nodes on a master sheet; place, anchors and last gaps are kept between calls."""
+    """Slave nodes on a master sheet; places and slips are kept between calls."""
 
     def __init__(self, xs, xm, spacing, pair, area=1.0):
         self.pair = pair
@@ -35,19 +35,20 @@ class Layers:
         origin = xm[:2, 0, 0].reshape(2, 1, 1)
         start = (xs[:2] - origin) / spacing
         unknown = np.full((1, *self.shape), UNKNOWN)
-        self.place = np.concatenate([start, unknown, np.zeros((1, *self.shape))])
-        self.anchor = self.place[:2].copy()
+        self.place = np.concatenate([start, unknown, np.zeros((2, *self.shape))])
+        self.slip = np.zeros((2, *self.shape))
         self.out = np.zeros(4)
 
     def settle(self, xs, xm, rounds=12):
         """Converge the projection; springs are unstretched there, and nodes at rest."""
         for _ in range(rounds):
             self.forces(xs, xm)
-            self.anchor = self.place[:2].copy()
+            self.slip[:] = 0.0
         return self
 
-    def forces(self, xs, xm, dt=1e-6, seam=None):
-        """Forces on slave and master; `out` has the energies of this call."""
+    def forces(self, xs, xm, dt=1e-6, seam=None, rates=None):
+        """Forces on slave and master; `out` has the energies of this call. rates: velocities of both, else at rest."""
+        vs, vm = (np.zeros_like(xs), np.zeros_like(xm)) if rates is None else rates
         fs, fm = np.zeros_like(xs), np.zeros_like(xm)
         self.out = np.zeros(4)
         n = self.shape[0]
@@ -56,8 +57,8 @@ class Layers:
             rest = np.zeros(self.shape, np.int8)
             scratch = tuple(part[0] for part in chunk_scratch(1))
             layer_forces(
-                xs, fs, self.area, packed(xm), self.cell, self.centre, self.place, self.anchor, rest, buffer, span,
-                self.pair, 1e6, dt, low, high, scratch, self.out,
+                xs, vs, fs, self.area, packed(xm), packed(vm), self.cell, self.centre, self.place, self.slip, rest,
+                buffer, span, self.pair, 1e6, dt, low, high, scratch, self.out,
             )  # fmt: skip
             for i in range(self.master[0]):
                 first, end = touched(span, i)
@@ -90,13 +91,13 @@ def resultants(*pairs):
 class Tool:
     """A sheet of cells over a tool that is given by its distance function on a grid."""
 
-    def __init__(self, distance, cells, *, stiffness=10.0, damping=0.0, mass=1.65e-9, friction=0.0, size=60.0):
+    def __init__(self, distance, cells, *, stiffness=10.0, damping=0.0, friction=0.0, size=60.0):
         self.spacing, self.origin = 1.0, np.array([-0.5 * size, -0.5 * size, -0.5 * size])
         axis = self.origin[0] + np.arange(int(size) + 1) * self.spacing
         points = np.array(np.meshgrid(axis, axis, axis, indexing="ij"))
         d, gradient = distance(points)
         self.values = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32))
-        self.law = (0.75, stiffness, damping, mass, friction)
+        self.law = (0.75, stiffness, damping, friction)
         self.dx, self.dy = (np.asarray(a, dtype=float) for a in cells)
         self.anchors = np.full((self.dx.size, self.dy.size, 4, 3), FREE)
         self.out, self.work = np.zeros(4), 0.0
@@ -106,15 +107,19 @@ class Tool:
         f = np.zeros_like(x)
         v = np.zeros_like(x) if v is None else v
         self.out, self.work = np.zeros(4), 0.0
+        self.press, pressed = np.zeros((PRESS, n, m)), np.zeros(n, bool)
         sleep = np.zeros((n - 1, m - 1), np.int16)
         for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
-            carry = np.zeros((3, m + 2))
-            self.work += tool_forces(
-                x, v, f, carry, self.dx, self.dy, self.values, self.origin, self.spacing, self.law, (z, speed),
-                1e6, dt, self.anchors, sleep, low, high, self.out,
+            carry = np.zeros((CARRY, m + 2))
+            work, _ = tool_forces(
+                x, v, f, self.press, pressed, carry, self.dx, self.dy,
+                self.values, self.origin, self.spacing, self.law, (z, speed), 1e6, dt, self.anchors, sleep, low, high,
+                self.out, np.zeros(CARRY),
             )  # fmt: skip
+            self.work += work
             if high < n:
-                f[:, high] += carry[:, :m]
+                f[:, high] += carry[:3, :m]
+                self.press[:, high] += carry[3:, :m]
         return f
 
 
