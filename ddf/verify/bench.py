@@ -13,6 +13,7 @@ from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial import cKDTree
 
 from ddf.build import _blocks, _corner_sum
 from ddf.case import HyperelasticMaterial, WovenMaterial
@@ -173,6 +174,19 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray
     return pools
 
 
+def _places(points: FloatArray, surface: FloatArray) -> FloatArray:
+    """Grid coordinates (2, ...) of points (3, ...) on a sheet (3, n, m): from the nearest node along its tangents."""
+    n, m = surface.shape[1:]
+    flat = points.reshape(3, -1)
+    i, j = np.unravel_index(cKDTree(surface.reshape(3, -1).T).query(flat.T)[1], (n, m))
+    a, b = (np.gradient(surface, axis=axis)[:, i, j] for axis in (1, 2))
+    r = flat - surface[:, i, j]
+    aa, bb, ab, ra, rb = ((p * q).sum(axis=0) for p, q in ((a, a), (b, b), (a, b), (r, a), (r, b)))
+    inverse = 1.0 / (aa * bb - ab * ab)
+    place = np.array([i + (bb * ra - ab * rb) * inverse, j + (aa * rb - ab * ra) * inverse])
+    return place.reshape(2, *points.shape[1:])
+
+
 def _pairs(
     sheets: Sequence[Sheet], touches: Sequence[Touch]
 ) -> tuple[np.ndarray, BoolArray, tuple[FloatArray, FloatArray]]:
@@ -193,9 +207,7 @@ def _pairs(
         records.append(
             (t.slave, t.master, first, buffer, span, t.sign, offset, t.friction, t.stiffness, damping, reduced)
         )
-        place = np.array(
-            [np.interp(x, line, np.arange(line.size)) for x, line in zip(slave.start, master.lines, strict=False)]
-        )
+        place = _places(slave.start, master.start)
         exposed.append(~slave.held.ravel())
         places.append(np.stack([*place, np.full(place[0].shape, UNKNOWN), np.zeros(place[0].shape)]).ravel())
         anchors.append(place.ravel())
