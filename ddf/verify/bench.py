@@ -7,7 +7,7 @@ A `Sheet` is its start, its reference and its law; `assemble` makes of sheets, c
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -245,8 +245,13 @@ def _step(sheets: Sequence[Sheet], touches: Sequence[Touch], tool: float, tool_d
     return SAFETY * min(limits)
 
 
-def drive(bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float) -> None:
-    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time."""
+def drive(
+    bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float, each: Callable[[], None] = lambda: None
+) -> None:
+    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time.
+
+    each: called after every CHUNK of steps.
+    """
     held = sheet_scalars(bench.model, bench.model.inverse_mass, k) == 0.0
     x, v = bench.x(k), bench.v(k)
     start, dt = x.copy(), bench.model.dt
@@ -256,6 +261,7 @@ def drive(bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: fl
         aim = start + share * (target - start)
         v[:, held] = ((aim - x) / (CHUNK * dt))[:, held]
         sim.advance(CHUNK)
+        each()
     v[:, held] = 0.0
 
 

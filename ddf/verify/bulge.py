@@ -95,11 +95,9 @@ def solve(options: Options) -> Answer:
         off = [abs(s.height[-1] / known[-1].height - 1) for s in (solved[0], solved[-1])]
         notes.append(f"observed order of the height: {log(off[0] / off[1]) / log(sizes[0] / sizes[-1]):.2f}")
     last = known[-1]
-    figure = Figure(
-        "x [mm]", "z [mm]",
-        (Curve(f"known, {kpa[-1]:.2f} kPa", last.r, last.z), Curve(f"solver, {sizes[-1]:g} mm", fine.r, fine.z, True)),
-        equal_axes=True,
-    )  # fmt: skip
+    r, z = np.concatenate([-last.r[::-1], last.r]), np.concatenate([last.z[::-1], last.z])
+    curves = (Curve(f"known, {kpa[-1]:.2f} kPa", r, z), Curve(f"solver, {sizes[-1]:g} mm", fine.r, fine.z, True))
+    figure = Figure("x [mm]", "z [mm]", curves, equal_axes=True)
     table = {
         "pressure_kPa": kpa, "known_height_mm": np.array([s.height for s in known]), "height_mm": fine.height,
         "known_stretch": np.array(stretches[: len(known)]), "stretch": fine.stretch,
