@@ -10,7 +10,9 @@ from ddf.errors import UsageError
 from ddf.verify.problem import Problem
 
 #: name on the command line -> module of this package that has its `PROBLEM`
-MODULES: dict[str, str] = {}
+MODULES: dict[str, str] = {
+    "heavy-elastica": "heavy_elastica",
+}
 
 
 def load_problem(name: str) -> Problem:

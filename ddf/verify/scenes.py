@@ -20,7 +20,7 @@ from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
 from ddf.model import LEDGER, SPRINGS, Model, State, sheet_vectors
 from ddf.scene import Scene
-from ddf.simulate import BATCH, Simulation
+from ddf.simulate import Simulation
 from ddf.verify.problem import FloatArray, Options
 
 Table = dict[str, Any]
@@ -160,22 +160,27 @@ def velocities(scene: Scene, k: int = 0) -> FloatArray:
     return sheet_vectors(scene.model, scene.state.v, k)
 
 
-def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: int = BATCH, k: int = 0) -> None:
-    """Advance while held nodes (mask) go straight to their target positions (3, count) [mm]."""
-    x, v = positions(sim.scene, k), velocities(sim.scene, k)
+def march(sim: Simulation, steps: int) -> None:
+    """Advance in one batch. Only contacts need the short batches of `Simulation.advance`: a lone ply has none."""
+    sim._batch(steps)
+
+
+def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: int) -> None:
+    """Advance while held nodes (rows, cols) go straight to their target positions (3, count) [mm]."""
+    x, v = positions(sim.scene), velocities(sim.scene)
     v[:, mask] = (target - x[:, mask]) / (steps * sim.model.dt)
-    sim.advance(steps)
+    march(sim, steps)
 
 
-def settle(sim: Simulation, speed_mm_s: float, longest_s: float, k: int = 0) -> float:
-    """Advance until nothing in sheet k is faster than a speed; returns the time it took [s].
+def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
+    """Advance until nothing in the ply is faster than a speed; returns the time it took [s].
 
     Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
     """
     start = sim.time
     while True:
-        sim.advance(10 * BATCH)
-        fastest = sim.fastest(k)
+        march(sim, steps)
+        fastest = sim.fastest(0)
         if fastest <= speed_mm_s:
             return sim.time - start
         if not math.isfinite(fastest) or sim.time - start > longest_s:
