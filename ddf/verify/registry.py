@@ -11,6 +11,9 @@ from ddf.verify.problem import Problem
 
 #: name on the command line -> module of this package that has its `PROBLEM`
 MODULES: dict[str, str] = {
+    "tension": "tension",
+    "picture-frame": "picture_frame",
+    "bias-extension": "bias_extension",
     "heavy-elastica": "heavy_elastica",
 }
 

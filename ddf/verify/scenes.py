@@ -77,15 +77,17 @@ def ply_scene(
     element_mm: float,
     orientation_deg: float = 0.0,
     tension_N_mm: float = 0.1,
+    shear_deg: float = 60.0,
 ) -> Scene:
     """A rectangular ply of that size about the origin, in the plane z = 0, free and at rest.
 
-    tension_N_mm: tension of the fibres across which the explicit step stays stable. No damping, no gravity.
+    tension_N_mm, shear_deg: tension of the fibres across which, and shear angle up to which, the explicit step stays
+    stable. No damping, no gravity.
     """
     whole = case_scene(fabric, size_mm, element_mm, ply={"orientation_deg": orientation_deg})
     scene = damped(alone(whole, 1), 0.0)
     sheet = scene.model.sheets[0]
-    tangent = shear_law.largest_tangent(*entered_law(fabric))
+    tangent = shear_law.largest_tangent(*entered_law(fabric), shear_deg)
     spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
     omega2 = timestep.ply_omega2(tangent, rigidity, tension_N_mm, spacing, 0.0, areal_mass(fabric))
     limit = 2.0 / math.sqrt(omega2)
@@ -173,14 +175,17 @@ def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: in
 
 
 def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
-    """Advance until nothing in the ply is faster than a speed; returns the time it took [s].
+    """Advance until nothing in the ply goes anywhere faster than a speed; returns the time it took [s].
 
-    Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
+    The speed is that between two looks an even number of steps apart: a sheared ply at rest goes to and fro from
+    step to step, see `probe.mean_force`. Raises UnstableError where it has not come to rest after `longest_s`, or is
+    no number any more.
     """
-    start = sim.time
+    start, x = sim.time, positions(sim.scene)
     while True:
+        before = x.copy()
         march(sim, steps)
-        fastest = sim.fastest(0)
+        fastest = float(np.sqrt(((x - before) ** 2).sum(axis=0).max())) / (steps * sim.model.dt)
         if fastest <= speed_mm_s:
             return sim.time - start
         if not math.isfinite(fastest) or sim.time - start > longest_s:
