@@ -61,7 +61,10 @@ def solve(options: Options) -> Answer:
             checks.append(Check(f"tip {name}/L at Gamma = {gamma:g}", "1", expected, value, BOUND, relative=False))
         known.append(exact)
     curves = [Curve("elastica", shape.x, -shape.drop) for shape in known]
-    curves += [Curve(f"Gamma = {gamma:g}", shape[0], shape[1], points=True) for gamma, shape in zip(gammas, shapes, strict=True)]
+    curves += [
+        Curve(f"Gamma = {gamma:g}", shape[0], shape[1], points=True)
+        for gamma, shape in zip(gammas, shapes, strict=True)
+    ]
     where = gammas.index(ORDER_GAMMA)
     exact_tip = np.array([known[where].x[-1], known[where].drop[-1]])
     coarse, _ = _tip(options, 2.0 * element, (ORDER_GAMMA,))

@@ -15,6 +15,7 @@ MODULES: dict[str, str] = {
     "picture-frame": "picture_frame",
     "bias-extension": "bias_extension",
     "heavy-elastica": "heavy_elastica",
+    "peirce-cantilever": "peirce_cantilever",
 }
 
 

@@ -77,17 +77,15 @@ def ply_scene(
     element_mm: float,
     orientation_deg: float = 0.0,
     tension_N_mm: float = 0.1,
-    shear_deg: float = 60.0,
 ) -> Scene:
     """A rectangular ply of that size about the origin, in the plane z = 0, free and at rest.
 
-    tension_N_mm, shear_deg: tension of the fibres across which, and shear angle up to which, the explicit step stays
-    stable. No damping, no gravity.
+    tension_N_mm: tension of the fibres across which the explicit step stays stable. No damping, no gravity.
     """
     whole = case_scene(fabric, size_mm, element_mm, ply={"orientation_deg": orientation_deg})
     scene = damped(alone(whole, 1), 0.0)
     sheet = scene.model.sheets[0]
-    tangent = shear_law.largest_tangent(*entered_law(fabric), shear_deg)
+    tangent = shear_law.largest_tangent(*entered_law(fabric))
     spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
     omega2 = timestep.ply_omega2(tangent, rigidity, tension_N_mm, spacing, 0.0, areal_mass(fabric))
     limit = 2.0 / math.sqrt(omega2)
