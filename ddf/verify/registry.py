@@ -16,6 +16,9 @@ MODULES: dict[str, str] = {
     "bias-extension": "bias_extension",
     "heavy-elastica": "heavy_elastica",
     "peirce-cantilever": "peirce_cantilever",
+    "buckling-strip": "buckling_strip",
+    "buckling-tension": "buckling_tension",
+    "buckling-foundation": "buckling_foundation",
 }
 
 

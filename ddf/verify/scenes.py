@@ -161,8 +161,11 @@ def velocities(scene: Scene, k: int = 0) -> FloatArray:
 
 
 def march(sim: Simulation, steps: int) -> None:
-    """Advance in one batch. Only contacts need the short batches of `Simulation.advance`: a lone ply has none."""
-    sim._batch(steps)
+    """Advance, in one batch without contacts: only they need the short ones of `Simulation.advance`."""
+    if sim.model.pairs.size:
+        sim.advance(steps)
+    else:
+        sim._batch(steps)
 
 
 def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: int) -> None:
