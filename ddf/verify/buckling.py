@@ -48,7 +48,7 @@ def squeezed(scene: Scene, load: float, k: int = 0) -> Scene:
 
 
 def critical_modes(scene: Scene, load: float, count: int, k: int = 0) -> Modes:
-    """The `count` lowest modes of sheet k; load: about the critical one [N/mm], the second of the two for the tangent."""
+    """The `count` lowest modes of sheet k, from the tangents unloaded and at a load near the critical one [N/mm]."""
     free = sheet_scalars(scene.model, scene.model.inverse_mass, k) > 0.0
     inner = np.flatnonzero(free)
     stiff = []

@@ -8,6 +8,7 @@ a foundation K = 2 k, for deflections below that interference.
 from __future__ import annotations
 
 import math
+
 import numpy as np
 
 from ddf.scene import Scene
@@ -31,9 +32,9 @@ def _bedded(options: Options, element_mm: float, length: float) -> Scene:
     )  # fmt: skip
     scene = damped(whole, 0.0)
     sheets = scene.model.sheets
-    skin = [float(value) for value in scene.model.pairs["offset"][:2]]
+    touching = float(scene.model.pairs["offset"][0])
     for k, sign in ((0, -1.0), (2, 1.0)):
-        positions(scene, k)[2] = sign * (skin[0] - INTERFERENCE_MM)
+        positions(scene, k)[2] = sign * (touching - INTERFERENCE_MM)
         scene = held(scene, np.ones((int(sheets[k]["rows"]), int(sheets[k]["cols"])), bool), k)
     x = positions(scene, PLY)
     x[2] = 0.0

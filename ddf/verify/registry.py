@@ -19,6 +19,10 @@ MODULES: dict[str, str] = {
     "buckling-strip": "buckling_strip",
     "buckling-tension": "buckling_tension",
     "buckling-foundation": "buckling_foundation",
+    "rigid-motion": "rigid_motion",
+    "patch-test": "patch_test",
+    "zero-energy-modes": "zero_energy",
+    "free-vibration": "free_vibration",
 }
 
 
