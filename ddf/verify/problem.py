@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -46,6 +46,14 @@ class Check:
     def passed(self) -> bool:
         """Whether the error is within its bound; NaN is not."""
         return self.bound is None or (math.isfinite(self.got) and self.error <= self.bound)
+
+
+def worst(
+    quantity: str, unit: str, at: Sequence[str], expected: FloatArray, got: FloatArray, bound: float | None
+) -> Check:
+    """The check of a curve: its point with the largest relative error; `at` says where each point is."""
+    k = int(np.argmax(np.nan_to_num(np.abs(got / expected - 1.0), nan=np.inf)))
+    return Check(f"{quantity}, worst: {at[k]}", unit, float(expected[k]), float(got[k]), bound)
 
 
 @dataclass(frozen=True)
