@@ -40,6 +40,7 @@ from ddf.model import (
 from ddf.scene import Scene
 from ddf.simulate import Simulation
 from ddf.verify.bench_sheets import BoolArray, FloatArray, Sheet, ToolContact, Touch
+from ddf.verify.scenes import entered_law
 
 SAFETY = 0.8  # step over the stable one
 CHUNK = 10  # steps between two looks at held nodes that are driven
@@ -106,7 +107,8 @@ def assemble(
 
 def _records(sheets: Sequence[Sheet]) -> tuple[np.ndarray, FloatArray]:
     """SHEET records and shear tables."""
-    records, tables = np.zeros(len(sheets), SHEET), []
+    records = np.zeros(len(sheets), SHEET)
+    tables: list[FloatArray] = []
     node = line = 0
     for r, s in zip(records, sheets, strict=True):
         r["node"], r["line"], r["thickness"] = node, line, s.thickness
@@ -117,21 +119,13 @@ def _records(sheets: Sequence[Sheet]) -> tuple[np.ndarray, FloatArray]:
             r["eh1"], r["eh2"] = s.material.membrane_modulus_N_mm
             r["bend1"], r["bend2"] = s.material.bending_rigidity_Nmm
             r["bend_in_plane"] = s.material.in_plane_bending_Nmm
-            tables.append(shear_law.shear_table(*_shear(s.material)))
+            tables.append(shear_law.shear_table(*entered_law(s.material)))
         else:
             r["kind"], r["face"], r["rigidity"] = DIAPHRAGM, PRESSURE_BOTTOM, s.rigidity
             r["hourglass"] = 4.0 * ogden.initial_shear_modulus(s.material.abaqus_terms) * s.thickness
         node += s.held.size
         line += sum(s.held.shape) - 2
     return records, np.array(tables) if tables else np.zeros((1, 2, 5))
-
-
-def _shear(fabric: WovenMaterial) -> tuple[FloatArray, FloatArray]:
-    table = fabric.shear_table
-    return shear_law.shear_samples(
-        fabric.shear_law, fabric.thickness_mm, fabric.shear_modulus_floor_MPa, fabric.shear_modulus_polynomial_MPa,
-        None if table is None else (table.angle_deg, table.normalised_shear_force_N_mm),
-    )  # fmt: skip
 
 
 def _terms(sheets: Sequence[Sheet]) -> FloatArray:
@@ -229,15 +223,13 @@ def _step(sheets: Sequence[Sheet], touches: Sequence[Touch], tool: float, tool_d
         stiff = sum(t.stiffness for t in mine)
         if isinstance(s.material, WovenMaterial):
             a = tuple(float(np.diff(line)[0]) for line in s.lines)
-            shear = shear_law.largest_tangent(*_shear(s.material))
+            shear = shear_law.largest_tangent(*entered_law(s.material))
             omega2 = timestep.ply_omega2(
                 shear, s.material.bending_rigidity_Nmm, s.tension, (a[0], a[1]), stiff + press, s.areal_mass
             )
         else:
             mu = ogden.initial_shear_modulus(s.material.abaqus_terms)
-            omega2 = timestep.diaphragm_omega2(
-                mu, s.thickness, s.rigidity, s.areal_mass, s.element, stiff, press
-            )
+            omega2 = timestep.diaphragm_omega2(mu, s.thickness, s.rigidity, s.areal_mass, s.element, stiff, press)
         rates = [timestep.contact_damping(t.damping, t.stiffness, s.areal_mass, s.areal_mass) for t in mine]
         rate = (2.0 * sum(rates) + (tool_damping if k == 0 else 0.0)) / s.areal_mass
         omega = math.sqrt(omega2)

@@ -9,17 +9,16 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ddf.build import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3
+from ddf.build import TONNE_PER_KG_M3
 from ddf.case import PRESETS, HyperelasticMaterial, WovenMaterial
 from ddf.loads.path import LoadPath
 from ddf.materials import ogden
 from ddf.mesh.distance import DistanceField
 from ddf.verify.problem import Options
+from ddf.verify.scenes import areal_mass, fabric_of
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-
-GRAVITY = 9810.0  # mm/s2
 
 
 @dataclass(frozen=True)
@@ -80,17 +79,28 @@ def flat_start(lines: tuple[FloatArray, FloatArray], z: float = 0.0) -> FloatArr
 def edges(lines: tuple[FloatArray, FloatArray], *sides: str) -> BoolArray:
     """(n, m): nodes on the sides "left", "right" (first grid direction), "front", "back" (second)."""
     held = np.zeros((lines[0].size, lines[1].size), bool)
+    views = {"left": held[0], "right": held[-1], "front": held[:, 0], "back": held[:, -1]}
     for side in sides:
-        held[{"left": np.s_[0], "right": np.s_[-1], "front": np.s_[:, 0], "back": np.s_[:, -1]}[side]] = True
+        views[side][:] = True
     return held
+
+
+def even_line(length: float, element: float, middle: float = 0.0) -> FloatArray:
+    """Evenly spaced places of at least three nodes [mm], about `element` apart."""
+    return middle + np.linspace(-0.5, 0.5, max(2, round(length / element)) + 1) * length
+
+
+def rubber_of(options: Options) -> HyperelasticMaterial:
+    """The rubber of the options, or the shipped silicone."""
+    return options.rubber or cast(HyperelasticMaterial, PRESETS["silicone-ogden"])
 
 
 def rubber_sheet(
     options: Options, lines: tuple[FloatArray, FloatArray], held: BoolArray | None = None, *, z: float = 0.0,
     thickness: float = 1.5, bending: bool = False,
 ) -> Sheet:  # fmt: skip
-    """A flat diaphragm of the options' rubber, or the shipped silicone."""
-    rubber = options.rubber or cast(HyperelasticMaterial, PRESETS["silicone-ogden"])
+    """A flat diaphragm."""
+    rubber = rubber_of(options)
     start = flat_start(lines, z)
     held = np.zeros(start.shape[1:], bool) if held is None else held
     rigidity = ogden.bending_rigidity(rubber.abaqus_terms, thickness) if bending else 0.0
@@ -101,11 +111,11 @@ def fabric_sheet(
     options: Options, lines: tuple[FloatArray, FloatArray], held: BoolArray | None = None, *, z: float = 0.0,
     mass_scaling: float = 20.0,
 ) -> Sheet:  # fmt: skip
-    """A flat ply with its families along the grid of the options' fabric, or the shipped plain weave."""
-    fabric = options.fabric or cast(WovenMaterial, PRESETS["plain-weave-6k-320"])
+    """A flat ply with its families along the grid."""
+    fabric = fabric_of(options)
     start = flat_start(lines, z)
     held = np.zeros(start.shape[1:], bool) if held is None else held
-    mass = fabric.areal_density_gsm * TONNE_PER_GSM_MM2 * mass_scaling
+    mass = areal_mass(fabric) * mass_scaling
     return Sheet(lines, start, held, mass, fabric.thickness_mm, fabric)
 
 

@@ -18,8 +18,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ddf.verify.bench import CHUNK, Bench, assemble
-from ddf.verify.bench_sheets import FloatArray, Sheet, ToolContact, Touch, constant_load, edges, fabric_sheet, rubber_sheet
+from ddf.verify.bench_sheets import (
+    FloatArray,
+    Sheet,
+    ToolContact,
+    Touch,
+    constant_load,
+    edges,
+    even_line,
+    fabric_sheet,
+    rubber_sheet,
+)
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
+from ddf.verify.scenes import fabric_of
 from ddf.verify.tool_fields import cylinder, gridded
 
 BOUND = 2e-2
@@ -30,7 +41,13 @@ SPEED, WAY, JUDGED = 100.0, 5.0, 2.5  # mm/s, mm: way of both ends, and the last
 TIGHTEN = 5.0  # speed of the leading end before [mm/s]
 DAMPING = 30.0  # 1/s
 STIFFNESS = 10.0  # N/mm3
-CASES = (("tool", 90.0, 0.28), ("tool", 180.0, 0.28), ("layer", 90.0, 0.28), ("layer", 180.0, 0.28), ("layer", 180.0, 0.6))
+CASES = (
+    ("tool", 90.0, 0.28),
+    ("tool", 180.0, 0.28),
+    ("layer", 90.0, 0.28),
+    ("layer", 180.0, 0.28),
+    ("layer", 180.0, 0.6),
+)
 QUICK = (("tool", 180.0, 0.28), ("layer", 90.0, 0.52))
 
 
@@ -45,13 +62,6 @@ def _surface(lines: tuple[FloatArray, FloatArray], radius: float, wrap: float) -
     x = np.repeat(_wrapped(lines[0], radius, wrap)[:, :, None], lines[1].size, axis=2)
     x[1] = lines[1]
     return x
-
-
-def _lines(length: float, width: float, element: float) -> tuple[FloatArray, FloatArray]:
-    return (
-        np.linspace(-0.5, 0.5, round(length / element) + 1) * length,
-        np.linspace(-0.5, 0.5, max(2, round(width / element)) + 1) * width,
-    )
 
 
 @dataclass(frozen=True)
@@ -82,10 +92,10 @@ class Strip:
 def make_strip(options: Options, kind: str, degrees: float, friction: float) -> Strip:
     """A slack strip round a `tool` or a `layer`."""
     wrap, element = math.radians(degrees), options.element_mm or ELEMENT
-    half = 0.5 * fabric_sheet(options, _lines(4.0, 4.0, 2.0)).thickness
+    half = 0.5 * fabric_of(options).thickness_mm
     radius = RADIUS + half
-    lines = _lines(radius * wrap + 2.0 * STRAIGHT + WAY, WIDTH, element)
-    lines = (lines[0] - 0.5 * WAY, lines[1])  # more of it on the trailing side
+    length = radius * wrap + 2.0 * STRAIGHT + WAY
+    lines = (even_line(length, element, -0.5 * WAY), even_line(WIDTH, element))  # more of it on the trailing side
     strip = fabric_sheet(options, lines, edges(lines, "left", "right"))
     if kind == "tool":
         strip = replace(strip, start=_surface(lines, radius, wrap))
@@ -94,7 +104,7 @@ def make_strip(options: Options, kind: str, degrees: float, friction: float) -> 
         field = gridded(cylinder(RADIUS, AXIS), *corners, spacing=0.5)
         tool = ToolContact(field, friction, -AXIS, STIFFNESS)
         return Strip(assemble([strip], constant_load(damping=DAMPING), tool=tool), 0, strip, wrap)
-    around = _lines(RADIUS * (wrap + 0.6), WIDTH + 6.0, element)
+    around = (even_line(RADIUS * (wrap + 0.6), element), even_line(WIDTH + 6.0, element))
     bar = rubber_sheet(options, around, np.ones((around[0].size, around[1].size), bool))
     bar = replace(bar, start=_surface(around, RADIUS, 2.0 * math.pi))
     strip = replace(strip, start=_surface(lines, RADIUS + 0.5 * bar.thickness + half, wrap))
@@ -105,7 +115,7 @@ def make_strip(options: Options, kind: str, degrees: float, friction: float) -> 
 def draw(options: Options, kind: str, degrees: float, friction: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Ways [mm] after the strip is tight, and tensions of both ends [N/mm]."""
     strip = make_strip(options, kind, degrees, friction)
-    bench, sim = strip.bench, strip.bench.simulation(options.threads)
+    sim = strip.bench.simulation(options.threads)
     strip.go(0.0, TIGHTEN)
     while strip.tension()[1] < TENSION and sim.time < 1.0:
         sim.advance(CHUNK)

@@ -24,7 +24,7 @@ CLOSE = 0.25  # of a cell
 def disc_lines(radius: float, element: float, margin: int) -> FloatArray:
     """Grid line places [mm], symmetric, with cells of `element` and `margin` of them beyond the radius."""
     half = int(np.ceil(radius / element)) + margin
-    return element * np.arange(-half, half + 1)
+    return np.linspace(-half * element, half * element, 2 * half + 1)
 
 
 class Edge:

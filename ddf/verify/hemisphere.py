@@ -10,10 +10,10 @@ turned by 45 degrees to it, is drawn over both by its frame until the ply lies o
 is why the comparison ends at u v = 0.8); there is no friction anywhere.
 
 A net on a sphere is whatever its two generators are, and without friction only the symmetry of the load keeps them
-great circles: a diaphragm that draws the ply's edges in puts fibres under slight compression, which bows the generators
-out sideways, by ten degrees of shear within 0.03 s once rounding errors have grown. So the state is made mirror-symmetric
-every few steps, which is what a quarter model with symmetry planes does. The remaining difference is that of fabric and
-net: chords of the elements for arcs, shear stiffness, and the corners' lift.
+great circles: a diaphragm that draws the ply's edges in puts fibres under slight compression, which bows the
+generators out sideways, by tens of degrees of shear within 0.03 s once rounding errors have grown. So the state is
+made mirror-symmetric every few steps, which is what a quarter model with symmetry planes does. The remaining
+difference is that of fabric and net: chords of the elements for arcs, shear stiffness, and the corners' lift.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _make_symmetric(bench: Bench) -> None:
 
 
 def press(options: Options, element: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """u v, shear angle [deg] and height above the ball [mm] of every cell of the pressed ply."""
+    """Places u v, shear angle [deg] and height above the ball [mm] of every cell of the pressed ply."""
     bench, ply = _scene(options, element)
     sim = bench.simulation(options.threads)
     target = bench.x(1).copy()
@@ -131,13 +131,18 @@ def solve(options: Options) -> Answer:
             f"ply {lift[inside].max():.2f} mm off the ball at most, {lift.max():.2f} mm at the corners"
         )
     checks = [
-        Check(f"shear angle, largest error, u v {low:g} to {high:g}", "deg", 0.0, float(error[band].max()), BOUND, False)
+        Check(
+            f"shear angle, largest error, u v {low:g} to {high:g}", "deg", 0.0, float(error[band].max()), BOUND, False
+        )
         for low, high in ((0.0, 0.4), (0.4, LARGEST))
         if (band := (np.abs(z) >= low) & (np.abs(z) <= high)).any()
     ]
     line = np.linspace(0.0, float(np.abs(z).max()), 100)
     quarter = (z > 0.0) & (np.arange(z.shape[0])[:, None] >= z.shape[0] // 2)
-    curves = (Curve("net", line, np.rad2deg(net_shear(line))), Curve("ply, every cell", z[quarter], shear[quarter], True))
+    curves = (
+        Curve("net", line, np.rad2deg(net_shear(line))),
+        Curve("ply, every cell", z[quarter], shear[quarter], True),
+    )
     table = {"uv": z.ravel(), "shear_deg": shear.ravel(), "net_deg": known.ravel(), "lift_mm": lift.ravel()}
     return Answer(tuple(checks), Figure("u v / R2", "shear angle [deg]", curves), table, tuple(notes))
 

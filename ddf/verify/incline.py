@@ -3,8 +3,9 @@
 A sheet of diaphragm lies on a held sheet, or on a flat tool, under gravity g at the angle a to the normal. It slides by
 g (sin a - mu cos a), and it starts to slide where tan a = mu (Coulomb). Acceleration: at a given angle, from rest, by
 the second difference of the mean way over two equal times, after the friction springs have wound up. Threshold: gravity
-turns (first, quickly but smoothly, from upright: a sudden load swings twice as far) slowly from 1 % below tan a = mu to 1 % above; the tangent at which the block has left its stuck place by
-several times the elastic way that friction springs allow. What gravity turns until then is bounded by the rate.
+leans over smoothly (a sudden load swings twice as far) and turns slowly from 1 % below tan a = mu to 1 % above; sought
+is the tangent at which the block is three times as far from its place as friction springs let it. At this rate it takes
+0.1 to 0.2 % of the tangent to get there.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy as np
 from ddf.contact.friction import TANGENTIAL
 from ddf.loads.path import smooth_ramp
 from ddf.verify.bench import Bench, assemble
-from ddf.verify.bench_sheets import GRAVITY, FloatArray, ToolContact, Touch, constant_load, rubber_sheet
+from ddf.verify.bench_sheets import FloatArray, ToolContact, Touch, constant_load, even_line, rubber_sheet
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
+from ddf.verify.scenes import GRAVITY
 from ddf.verify.tool_fields import gridded, plane
 
 BOUND = 5e-3
@@ -49,24 +51,17 @@ class Block:
         return float(self.bench.x(self.sheet)[0].mean())
 
 
-def _lines(start: float, length: float, width: float) -> tuple[FloatArray, FloatArray]:
-    return (
-        start + np.linspace(0.0, length, round(length / ELEMENT) + 1),
-        np.linspace(-0.5, 0.5, round(width / ELEMENT) + 1) * width,
-    )
-
-
 def make_block(options: Options, kind: str, friction: float, angle: float) -> Block:
     """A block on a `layer` or on a `tool`, pressed in by its weight at an angle [rad]."""
     path = constant_load()
-    block = rubber_sheet(options, _lines(10.0, BLOCK, BLOCK))
+    block = rubber_sheet(options, (even_line(BLOCK, ELEMENT, 14.0), even_line(BLOCK, ELEMENT)))
     pressed = block.areal_mass * GRAVITY * math.cos(angle) / STIFFNESS
     if kind == "tool":
         block.start[2] = LIFT + 0.5 * block.thickness - pressed
         field = gridded(plane(0.0, LIFT), (-5.0, -20.0, 0.0), (TABLE, 20.0, LIFT + 10.0), 5.0)
         made = Block(assemble([block], path, tool=ToolContact(field, friction, stiffness=STIFFNESS)), 0)
     else:
-        lines = _lines(0.0, TABLE, 2.0 * BLOCK)
+        lines = (even_line(TABLE, ELEMENT, 0.5 * TABLE), even_line(2.0 * BLOCK, ELEMENT))
         table = rubber_sheet(options, lines, np.ones((lines[0].size, lines[1].size), bool))
         block.start[2] = block.thickness - pressed
         made = Block(assemble([table, block], path, [Touch(1, 0, 1.0, friction, STIFFNESS)]), 1)

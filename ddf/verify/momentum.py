@@ -2,8 +2,8 @@
 
 Two free sheets, the upper one turned by 20 degrees and pressed in by a tenth of a millimetre at first, get a sliding, a
 turning and a random velocity at every node. Without load and damping of mass, internal forces, contact and friction
-keep their common  P = sum m v  and  L = sum x cross m v  (v half a step behind x: the leapfrog keeps both exactly where
-forces and moments cancel). Drifts are over sum m |v| and sum m |v| |x|. Each step's friction heat of every block of rows
+keep their common  P = sum m v  and  L = sum x cross m v  (v half a step behind x: the leapfrog keeps both where forces
+and moments cancel). Drifts are over sum m |v| and sum m |v| |x|. Each step's friction heat of every block of rows
 is looked at on its own.
 
 The tool is rigid and takes momentum; a flat one without friction leaves P_x, P_y and L_z of a sheet alone.
@@ -18,7 +18,16 @@ import numpy as np
 
 from ddf.model import FRICTION, TOOL_FRICTION
 from ddf.verify.bench import Bench, assemble
-from ddf.verify.bench_sheets import FloatArray, Sheet, ToolContact, Touch, constant_load, fabric_sheet, rubber_sheet
+from ddf.verify.bench_sheets import (
+    FloatArray,
+    Sheet,
+    ToolContact,
+    Touch,
+    constant_load,
+    even_line,
+    fabric_sheet,
+    rubber_sheet,
+)
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
 from ddf.verify.tool_fields import gridded, plane
 
@@ -45,8 +54,8 @@ class History:
     exchanged: float  # of sum m |v|
 
 
-def _lines(length: float, width: float, element: float) -> tuple[FloatArray, FloatArray]:
-    return tuple(np.linspace(-0.5, 0.5, round(a / element) + 1) * a for a in (length, width))  # type: ignore[return-value]
+BELOW = (even_line(50.0, 5.0), even_line(40.0, 5.0))
+ABOVE = (even_line(36.0, 4.0), even_line(28.0, 4.0))
 
 
 def _turned(sheet: Sheet, degrees: float, z: float) -> Sheet:
@@ -57,8 +66,8 @@ def _turned(sheet: Sheet, degrees: float, z: float) -> Sheet:
 
 def two_sheets(options: Options, below: Make, above: Make, friction: float) -> Bench:
     """Two sheets in contact; diaphragms touch each other both ways, as in a run."""
-    master = below(options, _lines(50.0, 40.0, 5.0))
-    slave = above(options, _lines(36.0, 28.0, 4.0))
+    master = below(options, BELOW)
+    slave = above(options, ABOVE)
     slave = _turned(slave, 20.0, 0.5 * (master.thickness + slave.thickness) - PRESSED)
     touches = [Touch(1, 0, 1.0, friction)]
     if below is above is rubber_sheet:
@@ -68,7 +77,7 @@ def two_sheets(options: Options, below: Make, above: Make, friction: float) -> B
 
 def on_tool(options: Options, friction: float) -> Bench:
     """A diaphragm on a flat tool above its platform."""
-    sheet = rubber_sheet(options, _lines(36.0, 28.0, 4.0))
+    sheet = rubber_sheet(options, ABOVE)
     sheet = _turned(sheet, 20.0, TOOL_TOP + 0.5 * sheet.thickness - PRESSED)
     field = gridded(plane(0.0, TOOL_TOP), (-60.0, -60.0, 0.0), (60.0, 60.0, TOOL_TOP + 20.0), 5.0)
     return assemble([sheet], constant_load(), tool=ToolContact(field, friction))
@@ -141,7 +150,9 @@ def solve(options: Options) -> Answer:
         key = name.replace(" ", "_")
         table |= {f"{key}_linear": h.linear, f"{key}_angular": h.angular}
     for name, h in (*list(seen.items())[:3], ("tool", rubbed)):
-        checks.append(Check(f"least heat over all heat, {name}", "-", 0.0, min(h.least_heat, 0.0), 1e-12, relative=False))
+        checks.append(
+            Check(f"least heat over all heat, {name}", "-", 0.0, min(h.least_heat, 0.0), 1e-12, relative=False)
+        )
     notes = [
         f"{name}: {h.exchanged:.2g} of sum m |v| changed hands, {h.heat:.3g} N mm of friction heat"
         for name, h in (*seen.items(), ("tool with friction", rubbed))

@@ -61,9 +61,8 @@ def solve(options: Options) -> Answer:
     if len(sizes) > 1:
         notes.append("no order is given: the error changes sign on the way")
     at = np.linspace(0.0, RADIUS, 60)
-    curves = (
-        Curve("known", at, 1e3 * known * (1.0 - (at / RADIUS) ** 2) ** 2), Curve(f"solver, {size:g} mm", r, 1e3 * w, True)
-    )  # fmt: skip
+    line = 1e3 * known * (1.0 - (at / RADIUS) ** 2) ** 2
+    curves = (Curve("known", at, line), Curve(f"solver, {size:g} mm", r, 1e3 * w, True))
     table = {"r_mm": r, "known_deflection_mm": shape, "deflection_mm": w}
     return Answer(checks, Figure("r [mm]", "deflection [um]", curves), table, tuple(notes))
 

@@ -85,11 +85,14 @@ def solve(options: Options) -> Answer:
         notes.append(f"observed order on even cells: {log(off[0] / off[1]) / log(sizes[0] / sizes[1]):.2f}")
     x, y = place
     saddle, screw = 0.5 * (x * x - 0.5 * y * y), x * y
+    bent_off, twisted_off = (
+        float(np.abs(got - shape).max() / shape.max()) for got, shape in ((bent, saddle), (twisted, screw))
+    )
     checks = (
         Check("moment of the ends", "N mm", moment_known, moment, BOUND),
         Check("torque of the ends", "N mm", torque_known, torque, BOUND),
-        Check("shape when bent, largest error", "-", 0.0, float(np.abs(bent - saddle).max() / saddle.max()), BOUND, False),
-        Check("shape when twisted, largest error", "-", 0.0, float(np.abs(twisted - screw).max() / screw.max()), BOUND, False),
+        Check("shape when bent, largest error", "-", 0.0, bent_off, BOUND, False),
+        Check("shape when twisted, largest error", "-", 0.0, twisted_off, BOUND, False),
     )  # fmt: skip
     row = x.shape[0] // 2
     curves = (

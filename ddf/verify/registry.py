@@ -23,6 +23,16 @@ MODULES: dict[str, str] = {
     "patch-test": "patch_test",
     "zero-energy-modes": "zero_energy",
     "free-vibration": "free_vibration",
+    "diaphragm-tension": "rubber_tension",
+    "diaphragm-bulge": "bulge",
+    "plate-disc": "plate_disc",
+    "plate-strip": "plate_strip",
+    "tool-distance": "tool_distance",
+    "incline": "incline",
+    "sliding": "sliding",
+    "capstan": "capstan",
+    "momentum": "momentum",
+    "hemisphere": "hemisphere",
 }
 
 

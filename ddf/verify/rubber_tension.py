@@ -18,7 +18,16 @@ import numpy as np
 from ddf.elements.rubber import cell_metric
 from ddf.materials.ogden import biot_stress
 from ddf.verify.bench import Bench, assemble, come_to_rest, drive
-from ddf.verify.bench_sheets import FloatArray, Sheet, constant_load, edges, flat_start, rubber_sheet
+from ddf.verify.bench_sheets import (
+    FloatArray,
+    Sheet,
+    constant_load,
+    edges,
+    even_line,
+    flat_start,
+    rubber_of,
+    rubber_sheet,
+)
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
 
 BOUND = 1e-3
@@ -31,8 +40,7 @@ STRIP = (50.0, 10.0)  # mm
 
 def _strip(options: Options) -> Sheet:
     element = options.element_mm or 2.5
-    length, width = STRIP
-    lines = (np.linspace(0.0, length, round(length / element) + 1), np.linspace(0.0, width, round(width / element) + 1))
+    lines = (even_line(STRIP[0], element), even_line(STRIP[1], element))
     return rubber_sheet(options, lines, edges(lines, "left", "right"))
 
 
@@ -82,8 +90,9 @@ def solve(options: Options) -> Answer:
     """Stress against stretch in the three modes."""
     stretches = (1.1, 2.0) if options.quick else STRETCHES
     line = np.linspace(1.0, 2.05, 60)
-    terms = _strip(options).material.abaqus_terms  # type: ignore[union-attr]
-    checks, curves, table = [], [], {}
+    terms = rubber_of(options).abaqus_terms
+    checks, curves = [], []
+    table: dict[str, FloatArray] = {}
     for mode in MODES:
         measured, stress = pull(options, mode, stretches)
         known = biot_stress(terms, measured, mode)
@@ -91,9 +100,8 @@ def solve(options: Options) -> Answer:
             Check(f"{mode} stress at stretch {a:.4g}", "kPa", 1e3 * float(k), 1e3 * float(s), BOUND)
             for a, k, s in zip(measured, known, stress, strict=True)
         ]
-        curves += [
-            Curve(mode, line, 1e3 * biot_stress(terms, line, mode)), Curve(f"{mode}, solver", measured, 1e3 * stress, True)
-        ]  # fmt: skip
+        curves.append(Curve(mode, line, 1e3 * biot_stress(terms, line, mode)))
+        curves.append(Curve(f"{mode}, solver", measured, 1e3 * stress, True))
         table |= {f"{mode}_stretch": measured, f"{mode}_stress_kPa": 1e3 * stress, f"{mode}_known_kPa": 1e3 * known}
     return Answer(tuple(checks), Figure("stretch", "Biot stress [kPa]", tuple(curves)), table)
 

@@ -18,16 +18,17 @@ from ddf.loads.path import LoadPath
 from ddf.model import FRICTION
 from ddf.verify.bench import Bench, assemble
 from ddf.verify.bench_sheets import (
-    GRAVITY,
     FloatArray,
     Sheet,
     Touch,
     edges,
+    even_line,
     fabric_sheet,
     ramped_load,
     rubber_sheet,
 )
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
+from ddf.verify.scenes import GRAVITY
 
 BOUND = 5e-3
 LENGTH, WIDTH, ELEMENT = 40.0, 20.0, 4.0  # mm
@@ -39,16 +40,10 @@ FADING = ((0.03, 600.0), (0.045, 100.0), (0.06, 20.0), (1.0, 0.0))  # mass dampi
 KINDS = (("diaphragm", 0.6), ("ply", 0.28))
 
 
-def _grid(start: float, length: float, width: float) -> tuple[FloatArray, FloatArray]:
-    return (
-        start + np.linspace(0.0, length, round(length / ELEMENT) + 1),
-        np.linspace(-0.5, 0.5, round(width / ELEMENT) + 1) * width,
-    )
-
-
 def _sheets(options: Options, kind: str) -> tuple[Sheet, Sheet]:
     """The held sheet and the drawn one, pressed in by its weight."""
-    below, above = _grid(0.0, LENGTH + GO + 16.0, WIDTH + 16.0), _grid(8.0, LENGTH, WIDTH)
+    below = (even_line(LENGTH + GO + 16.0, ELEMENT, 0.5 * GO), even_line(WIDTH + 16.0, ELEMENT))
+    above = (even_line(LENGTH, ELEMENT), even_line(WIDTH, ELEMENT))
     make = rubber_sheet if kind == "diaphragm" else fabric_sheet
     bed = make(options, below, np.ones((below[0].size, below[1].size), bool))
     drawn = make(options, above, edges(above, "right"))
@@ -93,7 +88,8 @@ def pull(options: Options, kind: str, friction: float) -> tuple[float, FloatArra
 
 def solve(options: Options) -> Answer:
     """Force and heat of both kinds of sheet; judged over the second half of the way."""
-    checks, curves, table = [], [], {}
+    checks, curves = [], []
+    table: dict[str, FloatArray] = {}
     for kind, friction in KINDS:
         weight, way, force, heat = pull(options, kind, friction)
         half = way.size // 2

@@ -66,7 +66,9 @@ def solve(options: Options) -> Answer:
     for number, shape in enumerate(QUICK if options.quick else TOOLS):
         exact, got, face = compare(shape, TOOLS[shape], options.element_mm or SPACING)
         error = np.abs(got - exact)
-        checks.append(Check(f"error at faces, {shape}", "mm", 0.0, float(error[face].max()), FACE_BOUND, relative=False))
+        checks.append(
+            Check(f"error at faces, {shape}", "mm", 0.0, float(error[face].max()), FACE_BOUND, relative=False)
+        )
         if not face.all():
             worst = float(error[~face].max())
             checks.append(Check(f"error at fillets, {shape}", "mm", 0.0, worst, FILLET_BOUND, relative=False))
