@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from ddf.errors import MeshError
 from ddf.verify.bench_sheets import BoolArray, FloatArray
 
 CLOSE = 0.25  # of a cell
@@ -31,9 +32,13 @@ class Edge:
     """Continues a sheet beyond the circle r = radius; `beyond` (n, n) are the nodes that it drives."""
 
     def __init__(self, lines: FloatArray, radius: float, clamped: bool) -> None:
+        element = float(lines[1] - lines[0])
+        if 6.0 * element > radius:
+            raise MeshError(
+                f"cells of {element:g} mm are too large for a disc of {radius:g} mm radius", "take a sixth of it"
+            )
         x, y = np.meshgrid(lines, lines, indexing="ij")
         r = np.hypot(x, y)
-        element = float(lines[1] - lines[0])
         self.beyond: BoolArray = r > radius - CLOSE * element
         reach = (2.01 if clamped else 1.01) * np.sqrt(2.0) * element
         near = self.beyond & (r < radius + reach)

@@ -25,7 +25,7 @@ from ddf.verify.bench_sheets import FloatArray, constant_load, flat_start, rubbe
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
 
 BOUND = 1e-2
-LENGTH, WIDTH, ELEMENT = 24.0, 12.0, 1.5  # mm
+LENGTH, WIDTH, ELEMENT = 15.0, 12.0, 1.5  # mm
 CURVATURE = 1e-6  # 1/mm
 EDGE_CELL = 0.25  # mm
 SPEED = 1e-8  # mm/s at which the strip counts as at rest
