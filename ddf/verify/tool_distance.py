@@ -73,13 +73,14 @@ def solve(options: Options) -> Answer:
             worst = float(error[~face].max())
             checks.append(Check(f"error at fillets, {shape}", "mm", 0.0, worst, FILLET_BOUND, relative=False))
         some = np.argsort(-error)[:80]
-        curves.append(Curve(shape, exact[some], got[some], True))
+        curves.append(Curve(shape, exact[some], (got - exact)[some], True))
         rows += [(number, e, g, f) for e, g, f in zip(exact[some], got[some], face[some], strict=True)]
     line = np.array([-INSIDE, OUTSIDE])
-    curves.append(Curve("known", line, line))
+    curves.append(Curve("known", line, np.zeros(2)))
+    curves.append(Curve("bound at faces", line, np.full(2, FACE_BOUND)))
     names = ("tool", "exact_mm", "gridded_mm", "at_face")
     table = dict(zip(names, np.array(rows, dtype=float).T, strict=True))
-    figure = Figure("exact distance [mm], the 80 worst points of each tool", "gridded distance [mm]", tuple(curves))
+    figure = Figure("exact distance [mm], the 80 worst points of each tool", "error of the field [mm]", tuple(curves))
     return Answer(tuple(checks), figure, table)
 
 
