@@ -27,7 +27,7 @@ import numpy as np
 
 from ddf.elements.shear import shear_sine
 from ddf.simulate import Simulation
-from ddf.verify.net import least_energy, make_net, mean_shear
+from ddf.verify.net import Net, least_energy, make_net, mean_shear
 from ddf.verify.probe import mean_force
 from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem, worst
 from ddf.verify.scenes import damped, entered_law, fabric_of, held, lead, ply_scene, positions, settle
@@ -90,6 +90,11 @@ def draw_strip(options: Options, cells: int, halts_deg: FloatArray, step: float 
     return np.array(angles), np.array(forces)
 
 
+def _pull(net: Net, angle: float, law: tuple[FloatArray, FloatArray]) -> float:
+    """Force of the net [N] at the way of the zones' angle [rad]."""
+    return least_energy(net, float(way(np.asarray(angle))), law, 0.5 * angle)[1]
+
+
 def solve(options: Options) -> Answer:
     """Angle in the middle and force at the halts, against the net and against the zones."""
     cells = QUICK_CELLS if options.quick else CELLS
@@ -115,10 +120,10 @@ def solve(options: Options) -> Answer:
         "way_mm": way(np.deg2rad(halts)), "zone_angle_deg": halts, "net_angle_deg": net_angle, "angle_deg": angle,
         "zone_force_N": zone_force, "net_force_N": net_force, "force_N": force,
     }  # fmt: skip
-    line = np.linspace(0.0, halts[-1], 100)[1:]
+    line = np.linspace(1.0, halts[-1], 40)
     curves = (
         Curve("zones", way(np.deg2rad(line)), grip_force(np.deg2rad(line), law)),
-        Curve("net of least energy", table["way_mm"], net_force),
+        Curve("net of least energy", way(np.deg2rad(line)), np.array([_pull(net, g, law) for g in np.deg2rad(line)])),
         Curve("ddf", table["way_mm"], force, points=True),
     )
     notes = [

@@ -43,7 +43,7 @@ def _bedded(options: Options, element_mm: float, length: float) -> Scene:
 
 def solve(options: Options) -> Answer:
     """A strip about four waves long."""
-    fabric = fabric_of(options)
+    fabric = fabric_of(options, bending=True)
     rigidity, foundation = fabric.bending_rigidity_Nmm[1], 2.0 * PENALTY_N_MM3
     element = options.element_mm or (QUICK_ELEMENT_MM if options.quick else ELEMENT_MM)
     length = WAVES * 2.0 * math.pi * (rigidity / foundation) ** 0.25

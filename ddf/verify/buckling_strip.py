@@ -17,7 +17,7 @@ BOUND = 0.02
 
 def solve(options: Options) -> Answer:
     """Critical load by both ways, and its order of convergence."""
-    fabric = fabric_of(options)
+    fabric = fabric_of(options, bending=True)
     element = options.element_mm or (QUICK_ELEMENT_MM if options.quick else ELEMENT_MM)
     rigidity = fabric.bending_rigidity_Nmm[1]
     wave = math.pi / LENGTH_MM

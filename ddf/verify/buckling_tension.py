@@ -50,7 +50,7 @@ def _stretched(options: Options, element_mm: float, length: float) -> Scene:
 
 def solve(options: Options) -> Answer:
     """A rectangle about four waves long."""
-    fabric = fabric_of(options)
+    fabric = fabric_of(options, bending=True)
     first, second = fabric.bending_rigidity_Nmm
     foundation = _foundation(first)
     element = options.element_mm or (QUICK_ELEMENT_MM if options.quick else ELEMENT_MM)

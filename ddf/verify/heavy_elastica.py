@@ -27,7 +27,7 @@ BOUND = 0.005
 
 
 def _cantilever(options: Options, element_mm: float) -> Cantilever:
-    fabric = fabric_of(options)
+    fabric = fabric_of(options, bending=True)
     cells = max(4, round(LENGTH_MM / element_mm + 0.5))
     a = LENGTH_MM / (cells - 0.5)
     scene = ply_scene(fabric, (2.0 * a, cells * a), a)

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ddf.errors import DdfError
 from ddf.verify.problem import FloatArray
 
 
@@ -82,7 +83,7 @@ def least_energy(net: Net, way: float, law: tuple[FloatArray, FloatArray], start
         y, value, matrix = y + share * move, ahead, ahead_matrix
         if np.abs(share * move[:-1]).max() < 1e-6:
             return y[:-1], float(y[-1])
-    raise ArithmeticError(f"no least energy of the net found at {way:g} mm")
+    raise DdfError(f"no least energy of the net found at {way:g} mm")
 
 
 def mean_shear(net: Net, t: FloatArray, radius: float) -> float:

@@ -84,7 +84,7 @@ def _disturbed(scene: Scene, element_mm: float) -> float:
 
 def solve(options: Options) -> Answer:
     """All patches."""
-    fabric, element = fabric_of(options), options.element_mm or ELEMENT_MM
+    fabric, element = fabric_of(options, bending=True), options.element_mm or ELEMENT_MM
     tension = 2.0 * 0.005 * max(fabric.membrane_modulus_N_mm)
     scene = ply_scene(fabric, (SIDE_MM, SIDE_MM), element, tension_N_mm=tension)
     flat, probe = positions(scene).copy(), Probe(scene)
@@ -116,12 +116,12 @@ def solve(options: Options) -> Answer:
         row = np.moveaxis(np.abs(force).max(axis=0), family - 1, 0)
         size = row[:, row.shape[1] // 2] / row.max()
         at = np.arange(size.size).astype(float)
-        curves.append(Curve(f"curvature {family}", at, np.log10(np.maximum(size, 1e-20)), points=True))
+        curves.append(Curve(f"curvature {family}", at, np.maximum(size, 1e-20), points=True))
         table |= {"node": at, f"relative_force_{family}": size}
     positions(scene)[:] = flat
     place = _disturbed(scene, element) / element
     checks.append(Check("disturbed inside comes to rest off, elements", "1", 0.0, place, PLACE_BOUND, False))
-    figure = Figure("node along the curvature", "log10 of force over the largest", tuple(curves))
+    figure = Figure("node along the curvature", "force over the largest", tuple(curves), log_y=True)
     return Answer(tuple(checks), figure, table)
 
 

@@ -93,7 +93,8 @@ def solve(options: Options) -> Answer:
         known = heavy_elastica(WEIGHT * strip.length**3 / strip.rigidity)
         curves.append(Curve(f"cylinder, {name}", strip.length * known.x, -strip.length * known.drop))
         x = positions(strip.scene)
-        middle = np.isclose(x[0], 0.0, atol=0.02 * WIDTH_MM) & (x[1] > 0.0)
+        aside = np.where(strip.scene.model.area.reshape(x.shape[1:]) > 0.0, np.abs(x[0]), np.inf)
+        middle = (aside < aside.min() + 0.02 * WIDTH_MM) & (x[1] > 0.0)
         curves.append(Curve(f"ddf, {name}", x[1][middle], x[2][middle], points=True))
     note = f"+-45: theory bounds the rigidity by 0 and D/2 = {0.5 * rigidity:.4f} N mm, reached by a cylinder"
     figure = Figure("ahead of the clamp [mm]", "height [mm]", tuple(curves), equal_axes=True)

@@ -35,6 +35,7 @@ DAMPING_1_S = 300.0
 NOISE = 1e-3  # in-plane, of an element: something for an instability to grow from
 BOUND = 0.005
 EVEN_BOUND_DEG = 0.05
+UNSTABLE = "N_s cos g falls: unstable"
 
 
 def _turned(start: FloatArray, angle: float) -> tuple[FloatArray, FloatArray]:
@@ -85,17 +86,18 @@ def solve(options: Options) -> Answer:
         checks.append(worst(f"N_s, {law} law", "N/mm", at, expected, got, BOUND))
         off = float(uneven.max())
         checks.append(Check(f"cells off the frame's angle, {law} law", "deg", 0.0, off, EVEN_BOUND_DEG, relative=False))
-        shown = angle <= np.deg2rad(61.0)
+        shown = (angle > np.deg2rad(1.0)) & (angle < np.deg2rad(61.0))
         degrees, force = np.rad2deg(angle[shown]), entered[shown]
         curves.append(Curve(f"entered, {law}", degrees, force))
         curves.append(Curve(f"ddf, {law}", ANGLES_DEG, got, points=True))
         falling = np.flatnonzero(np.diff(force * np.cos(angle[shown])) < 0.0)
         if falling.size:
             range_ = degrees[falling[[0, -1]]]
-            curves.append(Curve(f"N_s cos g falls: unstable ({law})", degrees[falling], force[falling]))
+            curves.append(Curve(f"{UNSTABLE} ({law})", degrees[falling], force[falling]))
             notes.append(f"{law} law: N_s cos g falls from {range_[0]:.1f} to {range_[1]:.1f} deg: unstable there")
         table |= {f"entered_{law}_N_mm": expected, f"measured_{law}_N_mm": got, f"uneven_{law}_deg": uneven}
-    figure = Figure("shear angle [deg]", "normalised shear force N_s [N/mm]", tuple(curves))
+    shown_last = tuple(sorted(curves, key=lambda curve: curve.name.startswith(UNSTABLE)))
+    figure = Figure("shear angle [deg]", "normalised shear force N_s [N/mm]", shown_last, log_y=True)
     return Answer(tuple(checks), figure, table, tuple(notes))
 
 

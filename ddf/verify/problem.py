@@ -74,6 +74,7 @@ class Figure:
     y_label: str
     curves: tuple[Curve, ...]
     equal_axes: bool = False
+    log_y: bool = False
 
 
 @dataclass(frozen=True)

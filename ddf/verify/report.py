@@ -87,6 +87,8 @@ def draw_answer(title: str, content: Figure) -> Any:
         else:
             axes.plot(curve.x, curve.y, label=label, color=colour, linewidth=1.5)
     axes.set(xlabel=content.x_label, ylabel=content.y_label)
+    if content.log_y:
+        axes.set_yscale("log")
     if content.equal_axes:
         axes.set_aspect("equal", adjustable="datalim")
     axes.set_title(title, loc="left", color=figures.INK, fontsize=11)

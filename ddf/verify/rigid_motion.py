@@ -85,12 +85,12 @@ def solve(options: Options) -> Answer:
     checks.append(Check(f"drift of angular momentum, {steps} steps", "1", 0.0, drift[1].max(), BOUND, False))
     at = np.arange(1, LOOKS + 1) * (steps // LOOKS)
     curves = (
-        Curve("bound", at[[0, -1]].astype(float), np.log10([BOUND, BOUND])),
-        Curve("linear", at.astype(float), np.log10(np.maximum(drift[0], 1e-20)), points=True),
-        Curve("angular", at.astype(float), np.log10(np.maximum(drift[1], 1e-20)), points=True),
+        Curve("bound", at[[0, -1]].astype(float), np.full(2, BOUND)),
+        Curve("linear", at.astype(float), np.maximum(drift[0], 1e-20), points=True),
+        Curve("angular", at.astype(float), np.maximum(drift[1], 1e-20), points=True),
     )
     table = {"step": at.astype(float), "linear_drift": drift[0], "angular_drift": drift[1]}
-    return Answer(tuple(checks), Figure("step", "log10 of the drift of momentum", curves), table)
+    return Answer(tuple(checks), Figure("step", "drift of momentum", curves, log_y=True), table)
 
 
 def _largest(values: FloatArray) -> float:

@@ -15,7 +15,7 @@ from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
-from ddf.errors import UnstableError
+from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
 from ddf.model import LEDGER, SPRINGS, Model, State, sheet_vectors
@@ -30,13 +30,16 @@ TONNE_PER_GSM_MM2 = 1e-12
 AROUND_MM = 50.0  # how much longer than the ply the frame is: a case wants 20 mm a side
 
 
-def fabric_of(options: Options) -> WovenMaterial:
-    """The fabric asked for; left out, the plain weave that ships with ddf."""
-    if options.fabric is not None:
-        return options.fabric
-    preset = PRESETS["plain-weave-6k-320"]
-    assert isinstance(preset, WovenMaterial)
-    return preset
+def fabric_of(options: Options, bending: bool = False) -> WovenMaterial:
+    """The fabric asked for; left out, the plain weave that ships with ddf.
+
+    bending: the problem is about bending. Raises DdfError where the fabric then has none.
+    """
+    fabric = options.fabric or PRESETS["plain-weave-6k-320"]
+    assert isinstance(fabric, WovenMaterial)
+    if bending and min(fabric.bending_rigidity_Nmm) == 0.0:
+        raise DdfError("the fabric has no bending rigidity", "this problem needs bending_rigidity_Nmm above 0")
+    return fabric
 
 
 def areal_mass(fabric: WovenMaterial) -> float:

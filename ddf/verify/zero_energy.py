@@ -17,7 +17,7 @@ from ddf.verify.scenes import fabric_of, ply_scene, positions
 
 CELLS = (7, 6)
 ELEMENT_MM = 2.0
-NOTHING = 1e-6
+NOTHING = 1e-4
 """An eigenvalue is zero below this, in the plane over the shear's, out of it over the bending's."""
 TWIST_BOUND = 1e-6
 WAY_MM = {(0, 1): 1e-5, (2,): 1e-6}
@@ -39,7 +39,7 @@ def spectra(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
 
 def solve(options: Options) -> Answer:
     """A whole rectangle along the fibres, and one cut at 45 degrees."""
-    fabric, element = fabric_of(options), options.element_mm or ELEMENT_MM
+    fabric, element = fabric_of(options, bending=True), options.element_mm or ELEMENT_MM
     checks, curves, table = [], [], {}
     for name, angle in (("0/90", 0.0), ("+-45", 45.0)):
         scene = ply_scene(fabric, (CELLS[0] * element, CELLS[1] * element), element, angle)
@@ -58,13 +58,11 @@ def solve(options: Options) -> Answer:
         ]  # fmt: skip
         for part, values, size in (("in plane", plane, scale[0]), ("out of plane", out, scale[1])):
             number = np.arange(1, 13).astype(float)
-            curves.append(
-                Curve(f"{part}, {name}", number, np.log10(np.maximum(np.abs(values[:12]) / size, 1e-18)), points=True)
-            )
+            curves.append(Curve(f"{part}, {name}", number, np.maximum(np.abs(values[:12]) / size, 1e-18), points=True))
             table[f"{part.replace(' ', '_')}_{name}_N_mm"] = values[:12]
     line = np.array([1.0, 12.0])
-    curves.insert(0, Curve("taken as zero below", line, np.log10([NOTHING, NOTHING])))
-    figure = Figure("eigenvalue", "log10 over shear's / bending's", tuple(curves))
+    curves.insert(0, Curve("taken as zero below", line, np.full(2, NOTHING)))
+    figure = Figure("eigenvalue", "over the shear's / the bending's stiffness", tuple(curves), log_y=True)
     return Answer(tuple(checks), figure, table)
 
 
