@@ -23,11 +23,11 @@ from ddf.verify.probe import Probe
 from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem
 from ddf.verify.scenes import damped, fabric_of, held, ply_scene, positions, settle
 
-SIDE_MM = 30.0
+CELLS = 10
 ELEMENT_MM = 3.0
 STRETCH = (1.004, 1.002)
 SHEAR_DEG = 20.0
-RADIUS_MM = 30.0
+BEND = 0.1  # angle between the bars of a rolled ply
 FORCE_BOUND = 1e-9
 ROLL_BOUND = 1e-6  # bending forces are 1e-5 of what a fibre strain of 1e-9 makes: rounding shows
 PLACE_BOUND = 1e-4
@@ -42,10 +42,10 @@ def _affine(x: FloatArray) -> FloatArray:
 
 
 def _rolled(x: FloatArray, along: int, a: float, strain: float) -> FloatArray:
-    """On a cylinder bent along an axis with nodes a apart, chords a (1 + strain) long."""
-    rolled = x.copy()
-    angle = 2.0 * np.arcsin(0.5 * a * (1.0 + strain) / RADIUS_MM) * x[along] / a
-    rolled[along], rolled[2] = RADIUS_MM * np.sin(angle), RADIUS_MM * np.cos(angle)
+    """On a cylinder of radius a / BEND bent along an axis with nodes a apart, chords a (1 + strain) long."""
+    rolled, radius = x.copy(), a / BEND
+    angle = 2.0 * np.arcsin(0.5 * BEND * (1.0 + strain)) * x[along] / a
+    rolled[along], rolled[2] = radius * np.sin(angle), radius * np.cos(angle)
     return rolled
 
 
@@ -86,7 +86,7 @@ def solve(options: Options) -> Answer:
     """All patches."""
     fabric, element = fabric_of(options, bending=True), options.element_mm or ELEMENT_MM
     tension = 2.0 * 0.005 * max(fabric.membrane_modulus_N_mm)
-    scene = ply_scene(fabric, (SIDE_MM, SIDE_MM), element, tension_N_mm=tension)
+    scene = ply_scene(fabric, (CELLS * element, CELLS * element), element, tension_N_mm=tension)
     flat, probe = positions(scene).copy(), Probe(scene)
     checks = [
         Check(
@@ -102,7 +102,7 @@ def solve(options: Options) -> Answer:
     table: dict[str, FloatArray] = {}
     for family in (1, 2):
         a, rigidity = float(scene.model.sheets[0][f"a{family}"]), fabric.bending_rigidity_Nmm[family - 1]
-        stiff, push = fabric.membrane_modulus_N_mm[family - 1], -rigidity / RADIUS_MM**2
+        stiff, push = fabric.membrane_modulus_N_mm[family - 1], -rigidity * (BEND / a) ** 2
         strain, rolled = balanced_roll(probe, flat, family - 1, a, push / stiff)
         force = probe.forces(rolled)
         checks.append(Check(f"inner forces, curvature {family}", "1", 0.0, _inside(force, 3), ROLL_BOUND, False))
@@ -111,7 +111,7 @@ def solve(options: Options) -> Answer:
         area = float(sheet_scalars(scene.model, getattr(scene.model, f"triple{family}"), 0).sum())
         got = sheet_strain(scene.model, scene.state, 0)["bending"]
         checks.append(
-            Check(f"energy, curvature {family}", "mJ", 0.5 * rigidity * area / RADIUS_MM**2, got, ENERGY_BOUND)
+            Check(f"energy, curvature {family}", "mJ", 0.5 * rigidity * area * (BEND / a) ** 2, got, ENERGY_BOUND)
         )
         row = np.moveaxis(np.abs(force).max(axis=0), family - 1, 0)
         size = row[:, row.shape[1] // 2] / row.max()

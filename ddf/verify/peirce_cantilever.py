@@ -9,7 +9,8 @@ Entered is D = E h^3 / 12 = 1.0417 N mm; what Peirce's formula makes of the exac
 expected at 0/90. At +-45 with the curvatures kx, ky along and across and the twist kxy the fibres' are
 (kx + ky)/2 +- kxy, so U = D/2 [(kx + ky)^2 / 2 + 2 kxy^2]: bent to a cylinder (ky = 0) the strip has D/2 = 0.521,
 the most it can have. Free edges let it curl across (ky towards -kx), which costs no bending at all but stretches a
-surface of double curvature, here against shear only; so theory gives the range 0 to D/2, and no number.
+surface of double curvature, here against shear only; so theory gives the range 0 to D/2, and no number. Peirce's
+formula reads the cylinder some per cent too stiff at this drop, so readings are compared with its reading.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ DIAGONALS, QUICK_DIAGONALS = 5, 3
 """Diagonals of a cell over the width at +-45."""
 PAPER_NMM, PAPER_45_NMM = 1.073, 0.472
 BOUND = 0.02
+BEYOND_NMM = 0.005
 AT_REST = 1e-4
 
 FABRIC = WovenMaterial(
@@ -71,6 +73,12 @@ def _measure(strip: Cantilever) -> float:
     return peirce_rigidity(WEIGHT, strip.length, ahead, -up)
 
 
+def _expected(strip: Cantilever) -> float:
+    """What Peirce's formula makes of the exact heavy elastica of the strip's rigidity [N mm]."""
+    exact = heavy_elastica(WEIGHT * strip.length**3 / strip.rigidity)
+    return peirce_rigidity(WEIGHT, strip.length, strip.length * exact.x[-1], strip.length * exact.drop[-1])
+
+
 def solve(options: Options) -> Answer:
     """Both lay-ups."""
     element = options.element_mm or (QUICK_ELEMENT_MM if options.quick else ELEMENT_MM)
@@ -79,14 +87,14 @@ def solve(options: Options) -> Answer:
     row = 0.5 * WIDTH_MM / diagonals
     turned = _strip(2 * round(0.5 * LENGTH_MM / row), row, True)
     got, got_45 = _measure(straight), _measure(turned)
-    rigidity = straight.rigidity
-    exact = heavy_elastica(WEIGHT * straight.length**3 / rigidity)
-    expected = peirce_rigidity(WEIGHT, straight.length, straight.length * exact.x[-1], straight.length * exact.drop[-1])
+    expected, cylinder = _expected(straight), _expected(turned)
+    beyond = max(0.0, got_45 - cylinder)
     checks = (
         Check("rigidity 0/90, heavy elastica", "N mm", expected, got, BOUND),
         Check("rigidity 0/90, paper", "N mm", PAPER_NMM, got, BOUND),
         Check("rigidity +-45, paper", "N mm", PAPER_45_NMM, got_45, None),
-        Check("rigidity +-45, cylinder: the most", "N mm", 0.5 * rigidity, got_45, None),
+        Check("rigidity +-45, cylinder: the most", "N mm", cylinder, got_45, None),
+        Check("rigidity +-45 beyond a cylinder's", "N mm", 0.0, beyond, BEYOND_NMM, relative=False),
     )
     curves, table = [], {"length_mm": np.array([straight.length, turned.length]), "peirce_Nmm": np.array([got, got_45])}
     for name, strip in (("0/90", straight), ("+-45", turned)):
@@ -96,7 +104,10 @@ def solve(options: Options) -> Answer:
         aside = np.where(strip.scene.model.area.reshape(x.shape[1:]) > 0.0, np.abs(x[0]), np.inf)
         middle = (aside < aside.min() + 0.02 * WIDTH_MM) & (x[1] > 0.0)
         curves.append(Curve(f"ddf, {name}", x[1][middle], x[2][middle], points=True))
-    note = f"+-45: theory bounds the rigidity by 0 and D/2 = {0.5 * rigidity:.4f} N mm, reached by a cylinder"
+    note = (
+        f"+-45: theory bounds the rigidity by 0 and D/2 = {turned.rigidity:.4f} N mm, that of a cylinder, which "
+        f"Peirce's formula reads as {cylinder:.4f}"
+    )
     figure = Figure("ahead of the clamp [mm]", "height [mm]", tuple(curves), equal_axes=True)
     return Answer(checks, figure, table, (note,))
 

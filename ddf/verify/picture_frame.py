@@ -30,7 +30,7 @@ ELEMENT_MM = 10.0
 QUICK_ELEMENT_MM = 20.0
 ANGLES_DEG = np.arange(5.0, 60.1, 5.0)
 LEADS = 10  # straight pieces of a node's way every 5 degrees
-LEAD_STEPS = 10
+SPEED_MM_S = 300.0
 DAMPING_1_S = 300.0
 NOISE = 1e-3  # in-plane, of an element: something for an instability to grow from
 BOUND = 0.005
@@ -61,7 +61,9 @@ def shear_frame(fabric: WovenMaterial, element_mm: float) -> tuple[FloatArray, F
     angle = 0.0
     for end in np.deg2rad(ANGLES_DEG):
         for step in np.linspace(angle, end, LEADS + 1)[1:]:
-            lead(sim, edge, _turned(start[:, edge], step)[0], LEAD_STEPS)
+            target = _turned(start[:, edge], step)[0]
+            way = float(np.abs(target - positions(scene)[:, edge]).max())
+            lead(sim, edge, target, 1 + round(way / SPEED_MM_S / scene.model.dt))
         angle = end
         sim.state.v[:] = 0.0
         settle(sim, 1e-3, 5.0)

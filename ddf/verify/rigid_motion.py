@@ -17,7 +17,7 @@ from ddf.verify.probe import Probe
 from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem
 from ddf.verify.scenes import fabric_of, march, ply_scene, positions, velocities
 
-SIDE_MM = 30.0
+CELLS = 10
 ELEMENT_MM = 3.0
 STEPS, LOOKS = 2000, 20
 BOUND = 1e-9
@@ -39,7 +39,8 @@ def _totals(x: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
 def solve(options: Options) -> Answer:
     """Forces on a rumpled ply, then a free flight."""
     element = options.element_mm or ELEMENT_MM
-    scene = ply_scene(fabric_of(options), (SIDE_MM, SIDE_MM), element)
+    side = CELLS * element
+    scene = ply_scene(fabric_of(options), (side, side), element)
     rng = np.random.default_rng(3)
     x = positions(scene)
     turn, away = rotation(rng), rng.uniform(-20.0, 20.0, 3).reshape(3, 1, 1)
@@ -59,7 +60,7 @@ def solve(options: Options) -> Answer:
             False,
         ),
         Check("sum of forces", "1", 0.0, _largest(total) / size, BOUND, False),
-        Check("sum of moments over the side", "1", 0.0, _largest(moment) / size / SIDE_MM, BOUND, False),
+        Check("sum of moments over the side", "1", 0.0, _largest(moment) / size / side, BOUND, False),
         Check(
             "turned forces less forces turned",
             "1",
@@ -79,7 +80,7 @@ def solve(options: Options) -> Answer:
     for _ in range(LOOKS):
         march(sim, steps // LOOKS)
         now = _totals(x, mass * v)
-        drifts.append((_largest(now[0] - start[0]) / scale, _largest(now[1] - start[1]) / scale / SIDE_MM))
+        drifts.append((_largest(now[0] - start[0]) / scale, _largest(now[1] - start[1]) / scale / side))
     drift = np.array(drifts).T
     checks.append(Check(f"drift of linear momentum, {steps} steps", "1", 0.0, drift[0].max(), BOUND, False))
     checks.append(Check(f"drift of angular momentum, {steps} steps", "1", 0.0, drift[1].max(), BOUND, False))
