@@ -1,8 +1,8 @@
-"""Coulomb friction by an elastic spring to an anchor.
+"""Coulomb friction by an elastic spring that gives way.
 
-The trial traction is  t = k s + c v  with s the way from the anchor and v the slip rate. Where |t| > mu N the
-traction is scaled back to mu N and the anchor follows, so that the spring carries mu N again. Dissipated is
-the spring's force times the way of its anchor, k keep s (1 - keep) s, and the work of the viscous part.
+The trial traction is  t = k s + c s',  s the slip that the spring holds and s' the slip rate. Where |t| > mu N the
+traction is scaled back to mu N and the spring keeps the part of s that carries it. Dissipated is the spring's mean
+force in the step times the way that it gave way, and the work of the viscous part.
 """
 
 from __future__ import annotations

@@ -55,15 +55,16 @@ STRIDE = np.uint64(4 * CHUNK)
 (
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
-    AREA, SU, SV,  # area (0: does not touch), slip of the friction spring
+    AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip of the friction spring
+    BEFORE,  # depth of the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
     GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
     WX, WY, WZ, BU, BV,  # w, and n.(N_k,a v_k)
     OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
-) = (np.uint64(k * CHUNK) for k in range(41))  # fmt: skip
-FIELDS = 41
+) = (np.uint64(k * CHUNK) for k in range(43))  # fmt: skip
+FIELDS = 43
 
 
 def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -162,6 +163,8 @@ def _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols):
         node = nodes[t]
         w[X + t], w[Y + t], w[Z + t] = x[0, node], x[1, node], x[2, node]
         w[OLD_RATE + t], w[OLD_DRAG + t], w[AREA + t] = place[3, node], place[4, node], area[node]
+        w[WHOLE + t] = area[node]
+        w[BEFORE + t] = max(0.0, -place[2, node])
         w[SU + t], w[SV + t] = slip[0, node], slip[1, node]
         a, b = weights(w[TU + t]), weights(w[TV + t])
         s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
@@ -177,7 +180,7 @@ def _fetch_rates(w, patch, nodes, count, v, y, cols):
     """W and n.(N_k,a v_k) of the nodes that touch or just left; y: the master's velocities."""
     stride = FOUR * cols
     for t in range(count):
-        if w[AREA + t] == 0.0 and w[OLD_DRAG + t] == 0.0:
+        if w[AREA + t] == 0.0 and w[BEFORE + t] == 0.0:
             continue
         node = nodes[t]
         m, mu, mv = first_order(y, np.uint64(patch[0, t]), stride, weights(w[TU + t]), weights(w[TV + t]))
@@ -253,9 +256,10 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
         if touches and cell[np.uint64(i), np.uint64(j)] > 0.0:
             touching += 1
             continue
-        if w[OLD_DRAG + t] != 0.0:
+        if w[BEFORE + t] > 0.0:
             touching += 1
         w[AREA + t] = 0.0
+        place[2, node] = max(0.0, gap)  # below 0 only where it touches
         slip[0, node] = 0.0
         slip[1, node] = 0.0
         if gap >= 0.0:
@@ -270,6 +274,7 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
 def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
     """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
+    inverse_dt = 1.0 / dt
     for t in range(count):
         ux, uy, uz, vx, vy, vz = _tangents(surface, t)
         guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
@@ -284,7 +289,8 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         rv = wx * vx + wy * vy + wz * vz + d * w[BV + t]
         su, sv = (gvv * ru - guv * rv) * inv, (guu * rv - guv * ru) * inv
         mx, my, mz = su * ux + sv * vx, su * uy + sv * vy, su * uz + sv * vz
-        tu, tv = w[SU + t] + dt * su, w[SV + t] + dt * sv
+        ou, ov = w[SU + t], w[SV + t]
+        tu, tv = ou + dt * su, ov + dt * sv
         px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
         kt, cs = TANGENTIAL * k, TANGENTIAL * c
         tx, ty, tz = -kt * px - cs * mx, -kt * py - cs * my, -kt * pz - cs * mz
@@ -300,7 +306,16 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
         viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
-        rubbed += kt * stretch2 * keep * (1.0 - keep) - dt * viscous
+        # the spring's mean force on the way it gave way; all that it held where the contact has opened
+        across = ou * (guu * tu + guv * tv) + ov * (guv * tu + gvv * tv)
+        rubbed += 0.5 * kt * (1.0 - keep) * (across + keep * stretch2) - dt * viscous
+        opened = stiffness * (w[WHOLE + t] - w[AREA + t]) if w[BEFORE + t] > 0.0 else 0.0
+        rubbed += 0.5 * TANGENTIAL * opened * (ou * (guu * ou + guv * ov) + ov * (guv * ou + gvv * ov))
+        # the spring's force is taken to act through all of the step in which contact begins or ends
+        before, now = w[BEFORE + t], max(0.0, -w[GAP + t])
+        damped -= 0.5 * opened * before * (rate - before * inverse_dt)
+        begun = k if before == 0.0 else 0.0
+        damped -= 0.5 * begun * now * (rate + now * inverse_dt)
         # the viscous force of the last step worked on the mean of the rates before and after it
         damped -= 0.5 * w[OLD_DRAG + t] * (w[OLD_RATE + t] + rate)
         w[RATE + t] = rate

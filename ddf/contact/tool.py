@@ -37,17 +37,30 @@ PRESS = 9
 CARRY = 3 + PRESS  # force and `press` of the row that belongs to the next block
 
 
+@njit(inline="always")
+def _held(p, anchor, nx, ny, nz):
+    """Squared length of the friction spring along the surface."""
+    x, y, z = p[0] - anchor[0], p[1] - anchor[1], p[2] - anchor[2]
+    s = x * nx + y * ny + z * nz
+    return x * x + y * y + z * z - s * s
+
+
 @njit(**FAST)
 def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out, give):
     """Force, tensor and viscous force of one contact point, into give (12,); returns its distance.
 
     p, v: position and velocity relative to the tool; k [N/mm], c [N s/mm]; updates its anchor and the energies
-    out (3,): normal spring, tangential spring, friction loss [N mm].
+    out (4,): normal spring, tangential spring, friction loss, loss where contact begins or ends [N mm].
     """
     px, py, pz = p
     d1, nx, ny, nz = sample(tool, origin, spacing, px, py, pz)
     near = min(d1, pz) - offset
     if near >= 0.0:
+        if anchor[0] < FREE:
+            rate = v[2] if pz < d1 else nx * v[0] + ny * v[1] + nz * v[2]
+            before = max(0.0, dt * rate - near)
+            out[2] += 0.5 * TANGENTIAL * k * _held(p, anchor, nx, ny, nz)
+            out[3] -= 0.5 * k * before * (dt * rate - before)
         anchor[0] = FREE
         return near
     c += dt * k
@@ -77,6 +90,7 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out, give)
             nx, ny, nz = 0.0, 0.0, 1.0
     if anchor[0] >= FREE:
         anchor[0], anchor[1], anchor[2] = px, py, pz
+        out[3] += 0.5 * k * near * (dt * (nx * v[0] + ny * v[1] + nz * v[2]) - near)
     sx, sy, sz = px - anchor[0], py - anchor[1], pz - anchor[2]
     s = sx * nx + sy * ny + sz * nz
     sx, sy, sz = sx - s * nx, sy - s * ny, sz - s * nz
@@ -93,7 +107,8 @@ def _point(p, v, tool, origin, spacing, offset, k, c, mu, dt, anchor, out, give)
         keep = min(1.0, limit / max(k * stretch, 1e-30))
         anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
     out[1] += 0.5 * k * (keep * stretch) ** 2
-    out[2] += k * stretch * stretch * keep * (1.0 - keep)
+    before = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
+    out[2] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
     inertia *= TANGENTIAL * share
     give[0], give[1], give[2] = fx + tx, fy + ty, fz + tz
@@ -126,7 +141,7 @@ def tool_forces(
     x, v, f (3, n, m); press (9, n, m) and carry (12, m + 2): see PRESS, CARRY; pressed (n,) bool: rows of press in use,
     and whether carry is, in the returned pair; dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping,
     friction); motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
-    anchors (n-1, m-1, 4, 3); sleep (n-1, m-1) int16; out (3,) as in `_point`; give (12,) scratch.
+    anchors (n-1, m-1, 4, 3); sleep (n-1, m-1) int16; out (4,) as in `_point`; give (12,) scratch.
     """
     offset, stiffness, damping, mu = law
     z, speed = motion

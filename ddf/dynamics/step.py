@@ -213,6 +213,7 @@ def _tool(model, state, work, member, row, b, dt, reach):
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]
     state.ledger[b, TOOL_FRICTION] += out[2]
+    state.ledger[b, TOOL_DAMPING] += out[3]
     state.ledger[b, TOOL_WORK] += done
 
 
