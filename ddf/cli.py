@@ -79,7 +79,7 @@ def run(
     loaded = load_case(case, overrides)
     folder = output if output is not None else Path("runs") / case.stem
     text = None if overrides else case.read_text(encoding="utf-8")
-    if not quiet:
+    if not quiet and loaded.model == "forming":
         click.echo("meshing, then compiling the kernels (about a minute the first time) ...", err=True)
     result = run_case(
         loaded, folder, case_text=text, threads=threads, resume=resume, force=force,
@@ -111,17 +111,29 @@ def _summary(result: Any) -> None:
     wall = ", ".join(f"{name} {seconds:.1f} s" for name, seconds in result.wall_s.items())
     click.echo(f"wall time: {wall}")
     for values in result.plies:
-        click.echo(
-            f"{values['ply']}: {values['wrinkle_count']} wrinkles, {values['wrinkle_total_length_mm']:.0f} mm in all, "
-            f"largest {values['wrinkle_largest_amplitude_mm']:.1f} mm high; shear up to "
-            f"{values['shear_max_deg']:.1f} deg; largest gap to the tool {values['bridging_largest_mm'] or 0.0:.1f} mm"
-        )
+        click.echo(_net_line(values) if "locked_area_percent" in values else _formed_line(values))
     for check in result.checks:
         mark = "ok  " if check["ok"] else "WARN"
         click.echo(f"{mark} {check['name']}: {check['value']:.3g} {check['unit']} (limit {check['limit']:g})")
     for note in result.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {result.folder / 'report.html'}")
+
+
+def _formed_line(values: dict[str, Any]) -> str:
+    return (
+        f"{values['ply']}: {values['wrinkle_count']} wrinkles, {values['wrinkle_total_length_mm']:.0f} mm in all, "
+        f"largest {values['wrinkle_largest_amplitude_mm']:.1f} mm high; shear up to "
+        f"{values['shear_max_deg']:.1f} deg; largest gap to the tool {values['bridging_largest_mm'] or 0.0:.1f} mm"
+    )
+
+
+def _net_line(values: dict[str, Any]) -> str:
+    return (
+        f"{values['ply']}: shear up to {values['shear_max_deg']:.1f} deg, mean {values['shear_mean_deg']:.1f} deg; "
+        f"{values['locked_area_percent']:.1f} % of the area beyond {values['locking_deg']:g} deg (locked); "
+        f"net from ({values['start_x_mm']:.4g}, {values['start_y_mm']:.4g}, {values['start_z_mm']:.4g}) mm"
+    )
 
 
 @main.command()
@@ -135,8 +147,10 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
     from ddf.build import build_scene
     from ddf.case import load_case
     from ddf.describe import describe_scene
+    from ddf.net_run import describe_net
 
-    click.echo(describe_scene(build_scene(load_case(case, overrides))))
+    loaded = load_case(case, overrides)
+    click.echo(describe_net(loaded) if loaded.model == "kinematic" else describe_scene(build_scene(loaded)))
 
 
 @main.command()

@@ -28,6 +28,7 @@ _TABLES: tuple[tuple[str, type[Section]], ...] = (
     ("[[process.stages]]", schema.Stage),
     ("[process.breakpoints]", schema.Breakpoints),
     ("[solver]", schema.Solver),
+    ("[kinematic]", schema.Kinematic),
     ("[output]", schema.Output),
 )
 _HEADING = "| key | type | default | range | meaning |\n|---|---|---|---|---|"
