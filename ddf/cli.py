@@ -1,6 +1,7 @@
 """The command line: a thin layer over the Python API, and the only place that prints.
 
-Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy limit; 130 interrupted.
+Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy limit; 4 a verification missed
+its bound; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from ddf import __version__
 from ddf.errors import DdfError
 
 INTERRUPTED = 130
+MISSED = 4
 
 
 class _Commands(click.Group):
@@ -44,6 +46,7 @@ def main() -> None:
     ddf init my-case.toml          a commented case to start from
     ddf check my-case.toml         what would run, without running it
     ddf run my-case.toml           run it; results go to runs/my-case
+    ddf verify --quick             solve problems with known answers
     """
 
 
@@ -194,3 +197,59 @@ def report(folder: Path) -> None:
     from ddf.postprocess import rebuild_report
 
     click.echo(f"report: {rebuild_report(folder)}")
+
+
+@main.command()
+@click.argument("problems", nargs=-1, metavar="[PROBLEM ...]")
+@click.option("--list", "show", is_flag=True, help="List the problems; solve none.")
+@click.option("--quick", is_flag=True, help="Coarser and shorter, same bounds.")
+@click.option("--element-mm", type=click.FloatRange(0.0, min_open=True), help="Element size  [default: the problem's]")
+@click.option("--case", type=click.Path(path_type=Path), help="Take the materials of this case's first ply and skins.")
+@click.option("--threads", type=click.IntRange(1, 1024), default=1, show_default=True, help="Threads.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=Path("runs/verify"), show_default=True,
+    help="Folder of results.",
+)  # fmt: skip
+def verify(
+    problems: tuple[str, ...],
+    show: bool,
+    quick: bool,
+    element_mm: float | None,
+    case: Path | None,
+    threads: int,
+    output: Path,
+) -> None:
+    """Solve problems with known answers and say how far off the solver is; all of them if none is named.
+
+    Example: ddf verify --quick picture-frame heavy-elastica
+    """
+    from ddf.verify.problem import Options
+    from ddf.verify.registry import choose_problems
+    from ddf.verify.report import text_table
+    from ddf.verify.runner import solve_all, with_case_materials
+
+    chosen = choose_problems(problems)
+    if show:
+        width = max((len(problem.name) for problem in chosen), default=0)
+        for problem in chosen:
+            click.echo(f"{problem.name.ljust(width)}  {problem.title} [{problem.source}]")
+        return
+    options = Options(quick=quick, element_mm=element_mm, threads=threads)
+    if case is not None:
+        options = with_case_materials(options, case)
+    click.echo(f"{len(chosen)} problems; the kernels are compiled first where they are new ...", err=True)
+    missed = []
+    for outcome in solve_all(chosen, options, output, lambda problem: click.echo(f"{problem.name} ...", err=True)):
+        click.echo(f"{outcome.problem.name}: {outcome.problem.title} ({outcome.wall_s:.1f} s)")
+        if outcome.answer is None:
+            click.echo(f"  FAILED: {outcome.message}")
+        else:
+            click.echo(text_table(outcome.answer.checks))
+            for note in outcome.answer.notes:
+                click.echo(f"note: {note}")
+        click.echo("")
+        if not outcome.passed:
+            missed.append(outcome.problem.name)
+    click.echo(f"{len(chosen) - len(missed)} of {len(chosen)} problems within their bounds; results in {output}")
+    if missed:
+        _fail(f"missed: {', '.join(missed)}", MISSED)

@@ -1,0 +1,33 @@
+"""The problems by name, in the order in which they run; a module is imported when its problem is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from importlib import import_module
+
+from ddf.errors import UsageError
+from ddf.verify.problem import Problem
+
+#: name on the command line -> module of this package that has its `PROBLEM`
+MODULES: dict[str, str] = {
+    "heavy-elastica": "heavy_elastica",
+}
+
+
+def load_problem(name: str) -> Problem:
+    """The problem of that name."""
+    problem: Problem = import_module(f"ddf.verify.{MODULES[name]}").PROBLEM
+    return problem
+
+
+def choose_problems(names: Sequence[str]) -> list[Problem]:
+    """Problems by name in the order asked for, all where none is named. Raises UsageError for unknown names."""
+    unknown = [name for name in names if name not in MODULES]
+    if unknown:
+        lines = []
+        for name in unknown:
+            near = get_close_matches(name, MODULES, n=3)
+            lines.append(f"no problem is called {name!r}" + (f"; did you mean {' or '.join(near)}?" if near else ""))
+        raise UsageError("\n".join(lines), "ddf verify --list shows all problems")
+    return [load_problem(name) for name in dict.fromkeys(names or MODULES)]

@@ -1,0 +1,190 @@
+"""Scenes of verification problems: one ply by itself, some nodes held, gravity, damping; and what moves them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ddf.build import build_scene
+from ddf.case.load import case_from_dict
+from ddf.case.presets import PRESETS
+from ddf.case.schema import WovenMaterial
+from ddf.dynamics import timestep
+from ddf.errors import UnstableError
+from ddf.loads.path import LoadPath
+from ddf.materials import shear_law
+from ddf.model import LEDGER, SPRINGS, Model, State, sheet_vectors
+from ddf.scene import Scene
+from ddf.simulate import Simulation
+from ddf.verify.problem import FloatArray, Options
+
+Table = dict[str, Any]
+
+GRAVITY = 9810.0  # mm/s2
+TONNE_PER_GSM_MM2 = 1e-12
+AROUND_MM = 50.0  # how much longer than the ply the frame is: a case wants 20 mm a side
+
+
+def fabric_of(options: Options) -> WovenMaterial:
+    """The fabric asked for; left out, the plain weave that ships with ddf."""
+    if options.fabric is not None:
+        return options.fabric
+    preset = PRESETS["plain-weave-6k-320"]
+    assert isinstance(preset, WovenMaterial)
+    return preset
+
+
+def areal_mass(fabric: WovenMaterial) -> float:
+    """Mass per area [tonne/mm2]."""
+    return fabric.areal_density_gsm * TONNE_PER_GSM_MM2
+
+
+def entered_law(fabric: WovenMaterial) -> tuple[FloatArray, FloatArray]:
+    """Shear angles [rad] and N_s [N/mm] of the fabric's law, as `build` hands it to the kernels' table."""
+    table = fabric.shear_table
+    return shear_law.shear_samples(
+        fabric.shear_law, fabric.thickness_mm, fabric.shear_modulus_floor_MPa, fabric.shear_modulus_polynomial_MPa,
+        None if table is None else (table.angle_deg, table.normalised_shear_force_N_mm),
+    )  # fmt: skip
+
+
+def case_scene(
+    fabric: WovenMaterial, size_mm: Sequence[float], element_mm: float, ply: Table | None = None, **tables: Table
+) -> Scene:
+    """Scene of a case with one rectangular ply, without added mass; `ply` and `tables` add keys to the case's own."""
+    own: Table = {"material": "fabric", "size_mm": list(size_mm), "element_mm": element_mm}
+    frame = [max(50.0, side + AROUND_MM) for side in size_mm]
+    raw: dict[str, Table] = {
+        "materials": {"fabric": fabric.model_dump(exclude={"base"})},
+        "frame": {"length_mm": frame[0], "width_mm": frame[1]},
+        "diaphragms": {"element_mm": 20.0},
+        "process": {"stages": [{"name": "all", "duration_s": 1.0}]},
+        "solver": {"mass_scaling": 1.0},
+    }
+    for name, table in tables.items():
+        raw[name] = raw.get(name, {}) | table
+    return build_scene(case_from_dict(raw | {"plies": [own | (ply or {})]}))
+
+
+def ply_scene(
+    fabric: WovenMaterial,
+    size_mm: Sequence[float],
+    element_mm: float,
+    orientation_deg: float = 0.0,
+    tension_N_mm: float = 0.1,
+) -> Scene:
+    """A rectangular ply of that size about the origin, in the plane z = 0, free and at rest.
+
+    tension_N_mm: tension of the fibres across which the explicit step stays stable. No damping, no gravity.
+    """
+    whole = case_scene(fabric, size_mm, element_mm, ply={"orientation_deg": orientation_deg})
+    scene = damped(alone(whole, 1), 0.0)
+    sheet = scene.model.sheets[0]
+    tangent = shear_law.largest_tangent(*entered_law(fabric))
+    spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
+    omega2 = timestep.ply_omega2(tangent, rigidity, tension_N_mm, spacing, 0.0, areal_mass(fabric))
+    limit = 2.0 / math.sqrt(omega2)
+    safe = scene.case.solver.step_safety * limit
+    sheet_vectors(scene.model, scene.state.x, 0)[2] = 0.0
+    return replace(scene, model=scene.model._replace(dt=safe), step_limit=safe)
+
+
+def alone(scene: Scene, k: int) -> Scene:
+    """The scene with sheet k only: no other sheet, no contact, no tool."""
+    model, state = scene.model, scene.state
+    sheet = model.sheets[k]
+    n, first, rows = int(sheet["rows"] * sheet["cols"]), int(sheet["node"]), int(sheet["rows"])
+    blocks = model.blocks[model.blocks["sheet"] == k].copy()
+    blocks["sheet"] = 0
+    sheets = model.sheets[k : k + 1].copy()
+    sheets["node"] = 0
+    spans = int(model.row_first[k])
+    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
+    pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
+    small = model._replace(
+        sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,
+        row_span=model.row_span[spans : spans + rows].copy(), row_first=np.zeros(1, np.int64),
+        weight=model.weight[4 * first : 4 * (first + n)].copy(),
+        centre=model.centre[2 * first : 2 * (first + n)].copy(),
+        exposed=model.exposed[:0], tool_sheet=-1,
+    )  # fmt: skip
+    x = state.x[3 * first : 3 * (first + n)].copy()
+    own = state._replace(
+        x=x, v=np.zeros_like(x), f=np.zeros_like(x), place=state.place[:0], anchor=state.anchor[:0],
+        ledger=np.zeros((blocks.size, LEDGER)), springs=np.zeros((blocks.size, SPRINGS)), clock=np.zeros(2),
+    )  # fmt: skip
+    return replace(scene, model=small, state=own, sheets=(scene.sheets[k],))
+
+
+def copied_state(state: State) -> State:
+    """The same state in arrays of its own."""
+    return State(*(array.copy() for array in state))
+
+
+def damped(scene: Scene, damping_1_s: float) -> Scene:
+    """The scene under constant loads with a mass damping [1/s]."""
+    air = np.full(2, scene.path.atmosphere)
+    path = LoadPath(
+        np.array([0.0, 1.0]), air, air, np.zeros(2), np.zeros(1, bool), np.array([damping_1_s]), ("hold",), air[0]
+    )
+    return replace(scene, path=path)
+
+
+def with_gravity(scene: Scene, gravity: Sequence[float]) -> Scene:
+    """The scene with an acceleration (3,) [mm/s2] on all masses."""
+    return replace(scene, model=scene.model._replace(gravity=np.asarray(gravity, dtype=float)))
+
+
+def held(scene: Scene, mask: NDArray[np.bool_], k: int = 0) -> Scene:
+    """The scene with nodes (rows, cols) of sheet k held at the velocity that the state gives them."""
+    model: Model = scene.model
+    mass, inverse = model.mass.copy(), model.inverse_mass.copy()
+    first = int(model.sheets[k]["node"])
+    place = first + np.flatnonzero(mask)
+    mass[place] = inverse[place] = 0.0
+    return replace(scene, model=model._replace(mass=mass, inverse_mass=inverse))
+
+
+def positions(scene: Scene, k: int = 0) -> FloatArray:
+    """Positions (3, rows, cols) of sheet k, a view."""
+    return sheet_vectors(scene.model, scene.state.x, k)
+
+
+def velocities(scene: Scene, k: int = 0) -> FloatArray:
+    """Velocities (3, rows, cols) of sheet k, a view."""
+    return sheet_vectors(scene.model, scene.state.v, k)
+
+
+def march(sim: Simulation, steps: int) -> None:
+    """Advance in one batch. Only contacts need the short batches of `Simulation.advance`: a lone ply has none."""
+    sim._batch(steps)
+
+
+def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: int) -> None:
+    """Advance while held nodes (rows, cols) go straight to their target positions (3, count) [mm]."""
+    x, v = positions(sim.scene), velocities(sim.scene)
+    v[:, mask] = (target - x[:, mask]) / (steps * sim.model.dt)
+    march(sim, steps)
+
+
+def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
+    """Advance until nothing in the ply is faster than a speed; returns the time it took [s].
+
+    Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
+    """
+    start = sim.time
+    while True:
+        march(sim, steps)
+        fastest = sim.fastest(0)
+        if fastest <= speed_mm_s:
+            return sim.time - start
+        if not math.isfinite(fastest) or sim.time - start > longest_s:
+            raise UnstableError(
+                f"not at rest after {sim.time - start:.3g} s: {fastest:.3g} mm/s, wanted {speed_mm_s:.3g}",
+                "another element size or material may be too stiff or too soft for this problem's damping",
+            )
