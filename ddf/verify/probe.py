@@ -76,7 +76,8 @@ def _nearest(number: np.ndarray, shift: tuple[int, ...]) -> np.ndarray:
     n, m = number.shape
     half = STENCIL // 2
     i, j = (
-        (np.arange(count) - first + half) // STENCIL * STENCIL + first for count, first in ((n, shift[0]), (m, shift[1]))
+        (np.arange(count) - first + half) // STENCIL * STENCIL + first
+        for count, first in ((n, shift[0]), (m, shift[1]))
     )
     there = ((i >= 0) & (i < n))[:, None] & ((j >= 0) & (j < m))[None, :]
     return np.where(there, number[np.clip(i, 0, n - 1)][:, np.clip(j, 0, m - 1)], -1)

@@ -12,6 +12,7 @@ from ddf.verify.problem import Problem
 #: name on the command line -> module of this package that has its `PROBLEM`
 MODULES: dict[str, str] = {
     "heavy-elastica": "heavy_elastica",
+    "kinematic-net": "kinematic_net",
 }
 
 
