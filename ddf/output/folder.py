@@ -23,6 +23,8 @@ KNOWN = (
     "history.csv",
     "wrinkles.csv",
     "metrics.json",
+    "metrics.csv",
+    "comparison.json",
     "checkpoint.npz",
     "report.html",
     "*.pvd",
@@ -30,7 +32,7 @@ KNOWN = (
     *(f"{inner}{atomic.TEMPORARY_PREFIX}*" for inner in ("", *(f"{inner}/" for inner in SUBFOLDERS))),
 )
 #: at least one of these is in any folder that a run was started in
-MARKS = ("run.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
+MARKS = ("run.json", "comparison.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
 
 
 class RunFolder:
