@@ -15,6 +15,7 @@ import click
 from ddf import __version__
 from ddf.errors import DdfError
 
+SOME_FAILED = 5
 INTERRUPTED = 130
 MISSED = 4
 
@@ -284,3 +285,75 @@ def compare(
     for line in comparison_lines(result):
         click.echo(line)
     click.echo(f"tables and pictures: {folder}")
+
+
+@main.command()
+@click.argument("what", metavar="NAME|FILE")
+@click.option("--case", type=click.Path(path_type=Path), help="Base case of a ready-made sweep.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder  [default: runs/sweep-NAME]")
+@_SET
+@click.option("--workers", type=click.IntRange(1, 1024), help="Cases at once  [default: as cores allow]")
+@click.option("--threads", type=click.IntRange(1, 1024), help="Threads of each case  [default: shared out]")
+@click.option("--resume", is_flag=True, help="Run what is missing, interrupted or failed.")
+@click.option("--force", is_flag=True, help="Overwrite an earlier sweep in the folder.")
+@click.option("--list", "only_list", is_flag=True, help="Show the cases; run nothing.")
+@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+def sweep(
+    what: str,
+    case: Path | None,
+    output: Path | None,
+    overrides: tuple[str, ...],
+    workers: int | None,
+    threads: int | None,
+    resume: bool,
+    force: bool,
+    only_list: bool,
+    quiet: bool,
+) -> None:
+    """Run a case under many changes: friction, loading, layup, tool, mesh, or a sweep file.
+
+    Leaves a manifest, a folder a case, one table and comparing pictures.
+    Example: ddf sweep friction -o runs/friction
+    """
+    from ddf.sweep.plan import assignments
+    from ddf.sweep.sweep import make_plan, run_sweep
+
+    plan = make_plan(what, case, overrides)
+    if only_list:
+        for point in plan.points:
+            click.echo(f"{point.name}: {', '.join(assignments(point.changes))}")
+        return
+    folder = output or Path("runs") / f"sweep-{Path(what).stem}"
+    try:
+        result = run_sweep(
+            plan, folder, resume=resume, force=force, workers=workers, threads=threads,
+            report=None if quiet else _sweep_progress,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        click.echo(f"interrupted; go on with --resume -o {folder}", err=True)
+        sys.exit(INTERRUPTED)
+    if not quiet and sys.stderr.isatty():
+        click.echo("", err=True)
+    computed = len(result.finished) - result.reused
+    click.echo(
+        f"{len(result.outcomes)} cases: {computed} computed, {result.reused} reused, {len(result.failed)} failed"
+    )
+    for outcome in result.failed:
+        click.echo(f"failed: {outcome.name}: {outcome.reason}")
+    for note in result.notes:
+        click.echo(f"note: {note}")
+    click.echo(f"table: {folder / 'table.csv'}; pictures: {folder / 'pictures'}")
+    if result.failed:
+        sys.exit(SOME_FAILED)
+
+
+def _sweep_progress(p: Any) -> None:
+    running = ", ".join(f"{name} {100 * share:.0f} %" for name, share in p.running.items())
+    line = (
+        f"{p.finished} of {p.cases} finished, {p.failed} failed; running {running or 'none'}; "
+        f"elapsed {p.elapsed_s:.0f} s"
+    )
+    if sys.stderr.isatty():
+        click.echo("\r" + line.ljust(140)[:200], nl=False, err=True)
+    else:
+        click.echo(line, err=True)
