@@ -1,7 +1,7 @@
 """The command line: a thin layer over the Python API, and the only place that prints.
 
 Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy limit; 4 a verification missed
-its bound; 130 interrupted.
+its bound; 5 some cases of a sweep failed; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import click
 from ddf import __version__
 from ddf.errors import DdfError
 
+MISSED = 4
 SOME_FAILED = 5
 INTERRUPTED = 130
-MISSED = 4
 
 
 class _Commands(click.Group):

@@ -78,6 +78,7 @@ def draw_curves(rows: list[dict[str, Any]], keys: list[str], title: str) -> Any:
             for number, ply in enumerate(plies):
                 colour = figures.COLOURS[number % len(figures.COLOURS)]
                 _curve(axes, [row for row in known if row["ply"] == ply], key, keys, metric, colour, ply)
+            axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))  # a small change should look small
             axes.grid(color="#e5e8eb", linewidth=0.6)
             axes.tick_params(colors=figures.MUTED, labelsize=8)
             axes.spines[["top", "right"]].set_visible(False)

@@ -22,7 +22,7 @@ size_mm = [120.0, 120.0]
 element_mm = 6.0
 [tool]
 shape = "hemisphere"
-radius_mm = 50.0
+radius_mm = 60.0
 """
 
 FORMING = {
@@ -54,7 +54,7 @@ kinematic.offset_mm = 0.0
 [[points]]
 name = "cannot"
 kinematic.offset_mm = 0.0
-plies.0.size_mm = [260.0, 260.0]
+plies.0.size_mm = [300.0, 300.0]
 plies.0.element_mm = 4.0
 kinematic.foot_radius_mm = 0
 [[points]]
