@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_bvp
 
+from ddf.errors import DdfError
 from ddf.verify.problem import FloatArray
 
 POINTS = 201
@@ -47,7 +48,7 @@ def heavy_elastica(gamma: float) -> Elastica:
 
         solution = solve_bvp(slope, ends, grid, y, tol=1e-8, max_nodes=20_000)
         if not solution.success:
-            raise ArithmeticError(f"heavy elastica at Gamma = {load}: {solution.message}")
+            raise DdfError(f"heavy elastica at Gamma = {load}: {solution.message}")
         grid, y = solution.x, solution.y
     _, _, x, drop = solution.sol(s)
     return Elastica(s, x, drop)

@@ -27,7 +27,7 @@ BOUND = 0.005
 
 
 def _cantilever(options: Options, element_mm: float) -> Cantilever:
-    fabric = fabric_of(options)
+    fabric = fabric_of(options, bending=True)
     cells = max(4, round(LENGTH_MM / element_mm + 0.5))
     a = LENGTH_MM / (cells - 0.5)
     scene = ply_scene(fabric, (2.0 * a, cells * a), a)
@@ -61,7 +61,10 @@ def solve(options: Options) -> Answer:
             checks.append(Check(f"tip {name}/L at Gamma = {gamma:g}", "1", expected, value, BOUND, relative=False))
         known.append(exact)
     curves = [Curve("elastica", shape.x, -shape.drop) for shape in known]
-    curves += [Curve(f"Gamma = {gamma:g}", *shape, points=True) for gamma, shape in zip(gammas, shapes, strict=True)]
+    curves += [
+        Curve(f"Gamma = {gamma:g}", shape[0], shape[1], points=True)
+        for gamma, shape in zip(gammas, shapes, strict=True)
+    ]
     where = gammas.index(ORDER_GAMMA)
     exact_tip = np.array([known[where].x[-1], known[where].drop[-1]])
     coarse, _ = _tip(options, 2.0 * element, (ORDER_GAMMA,))

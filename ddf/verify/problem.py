@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -48,6 +48,14 @@ class Check:
         return self.bound is None or (math.isfinite(self.got) and self.error <= self.bound)
 
 
+def worst(
+    quantity: str, unit: str, at: Sequence[str], expected: FloatArray, got: FloatArray, bound: float | None
+) -> Check:
+    """The check of a curve: its point with the largest relative error; `at` says where each point is."""
+    k = int(np.argmax(np.nan_to_num(np.abs(got / expected - 1.0), nan=np.inf)))
+    return Check(f"{quantity}, worst: {at[k]}", unit, float(expected[k]), float(got[k]), bound)
+
+
 @dataclass(frozen=True)
 class Curve:
     """One curve of a figure."""
@@ -66,6 +74,7 @@ class Figure:
     y_label: str
     curves: tuple[Curve, ...]
     equal_axes: bool = False
+    log_y: bool = False
 
 
 @dataclass(frozen=True)

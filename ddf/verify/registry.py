@@ -11,7 +11,18 @@ from ddf.verify.problem import Problem
 
 #: name on the command line -> module of this package that has its `PROBLEM`
 MODULES: dict[str, str] = {
+    "tension": "tension",
+    "picture-frame": "picture_frame",
+    "bias-extension": "bias_extension",
     "heavy-elastica": "heavy_elastica",
+    "peirce-cantilever": "peirce_cantilever",
+    "buckling-strip": "buckling_strip",
+    "buckling-tension": "buckling_tension",
+    "buckling-foundation": "buckling_foundation",
+    "rigid-motion": "rigid_motion",
+    "patch-test": "patch_test",
+    "zero-energy-modes": "zero_energy",
+    "free-vibration": "free_vibration",
     "kinematic-net": "kinematic_net",
 }
 

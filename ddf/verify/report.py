@@ -76,15 +76,19 @@ def draw_answer(title: str, content: Figure) -> Any:
     """The picture of a problem: what is known as lines, what the solver said as points."""
     figure = figures.new_figure(7.5, 4.8)
     axes = figure.subplots()
-    colours: dict[bool, int] = {False: 0, True: 0}
+    seen: dict[tuple[str, bool], str] = {}
     for curve in content.curves:
-        colour = figures.COLOURS[colours[curve.points] % len(figures.COLOURS)]
-        colours[curve.points] += 1
+        key = (curve.name, curve.points)
+        label = curve.name if key not in seen else None  # curves of one name share a colour and an entry
+        before = sum(points == curve.points for _, points in seen)
+        colour = seen.setdefault(key, figures.COLOURS[before % len(figures.COLOURS)])
         if curve.points:
-            axes.plot(curve.x, curve.y, "o", label=curve.name, color=colour, markersize=4.5, markerfacecolor="none")
+            axes.plot(curve.x, curve.y, "o", label=label, color=colour, markersize=4.5, markerfacecolor="none")
         else:
-            axes.plot(curve.x, curve.y, label=curve.name, color=colour, linewidth=1.5)
+            axes.plot(curve.x, curve.y, label=label, color=colour, linewidth=1.5)
     axes.set(xlabel=content.x_label, ylabel=content.y_label)
+    if content.log_y:
+        axes.set_yscale("log")
     if content.equal_axes:
         axes.set_aspect("equal", adjustable="datalim")
     axes.set_title(title, loc="left", color=figures.INK, fontsize=11)

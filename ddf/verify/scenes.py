@@ -15,7 +15,7 @@ from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
-from ddf.errors import UnstableError
+from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
 from ddf.model import LEDGER, SPRINGS, Model, State, sheet_vectors
@@ -30,13 +30,16 @@ TONNE_PER_GSM_MM2 = 1e-12
 AROUND_MM = 50.0  # how much longer than the ply the frame is: a case wants 20 mm a side
 
 
-def fabric_of(options: Options) -> WovenMaterial:
-    """The fabric asked for; left out, the plain weave that ships with ddf."""
-    if options.fabric is not None:
-        return options.fabric
-    preset = PRESETS["plain-weave-6k-320"]
-    assert isinstance(preset, WovenMaterial)
-    return preset
+def fabric_of(options: Options, bending: bool = False) -> WovenMaterial:
+    """The fabric asked for; left out, the plain weave that ships with ddf.
+
+    bending: the problem is about bending. Raises DdfError where the fabric then has none.
+    """
+    fabric = options.fabric or PRESETS["plain-weave-6k-320"]
+    assert isinstance(fabric, WovenMaterial)
+    if bending and min(fabric.bending_rigidity_Nmm) == 0.0:
+        raise DdfError("the fabric has no bending rigidity", "this problem needs bending_rigidity_Nmm above 0")
+    return fabric
 
 
 def areal_mass(fabric: WovenMaterial) -> float:
@@ -161,8 +164,11 @@ def velocities(scene: Scene, k: int = 0) -> FloatArray:
 
 
 def march(sim: Simulation, steps: int) -> None:
-    """Advance in one batch. Only contacts need the short batches of `Simulation.advance`: a lone ply has none."""
-    sim._batch(steps)
+    """Advance, in one batch without contacts: only they need the short ones of `Simulation.advance`."""
+    if sim.model.pairs.size:
+        sim.advance(steps)
+    else:
+        sim._batch(steps)
 
 
 def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: int) -> None:
@@ -173,14 +179,17 @@ def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: in
 
 
 def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
-    """Advance until nothing in the ply is faster than a speed; returns the time it took [s].
+    """Advance until nothing in the ply goes anywhere faster than a speed; returns the time it took [s].
 
-    Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
+    The speed is that between two looks an even number of steps apart: a sheared ply at rest goes to and fro from
+    step to step, see `probe.mean_force`. Raises UnstableError where it has not come to rest after `longest_s`, or is
+    no number any more.
     """
-    start = sim.time
+    start, x = sim.time, positions(sim.scene)
     while True:
+        before = x.copy()
         march(sim, steps)
-        fastest = sim.fastest(0)
+        fastest = float(np.sqrt(((x - before) ** 2).sum(axis=0).max())) / (steps * sim.model.dt)
         if fastest <= speed_mm_s:
             return sim.time - start
         if not math.isfinite(fastest) or sim.time - start > longest_s:

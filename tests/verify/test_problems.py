@@ -1,0 +1,83 @@
+"""All problems in their quick form, and that they notice a solver that is wrong."""
+
+from dataclasses import replace
+from importlib import import_module
+
+import pytest
+
+from ddf.verify import scenes
+from ddf.verify.problem import Options
+from ddf.verify.registry import MODULES, load_problem
+
+QUICK = Options(quick=True)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_quick_form_passes(name):
+    answer = load_problem(name).solve(QUICK)
+    assert answer.checks
+    assert [check for check in answer.checks if not check.passed] == []
+    assert any(check.bound is not None for check in answer.checks)
+    assert len({len(column) for column in answer.table.values()}) == 1
+
+
+def _sheets(key, factor):
+    def change(scene):
+        sheets = scene.model.sheets.copy()
+        sheets[key] *= factor
+        return replace(scene, model=scene.model._replace(sheets=sheets))
+
+    return change
+
+
+def _pool(key, node, factor):
+    def change(scene):
+        values = getattr(scene.model, key).copy()
+        values[node] *= factor
+        return replace(scene, model=scene.model._replace(**{key: values}))
+
+    return change
+
+
+def _shear(factor):
+    def change(scene):
+        tables = scene.model.shear_tables.copy()
+        tables[:, :-1] *= factor
+        return replace(scene, model=scene.model._replace(shear_tables=tables))
+
+    return change
+
+
+def _damped(scene):
+    return scenes.damped(scene, 1.0)
+
+
+def _heavy(scene):
+    return scenes.with_gravity(scene, (0.0, 0.0, -1.0))
+
+
+WRONG = {
+    "tension": _sheets("eh1", 1.002),
+    "picture-frame": _shear(1.01),
+    "bias-extension": _shear(0.95),
+    "heavy-elastica": _sheets("bend2", 1.05),
+    "peirce-cantilever": _sheets("bend2", 0.96),
+    "buckling-strip": _sheets("bend2", 0.97),
+    "buckling-tension": _sheets("bend2", 0.9),
+    "buckling-foundation": _sheets("bend2", 0.9),
+    "rigid-motion": _heavy,
+    "patch-test": _pool("bar1", 60, 1.01),
+    "zero-energy-modes": _pool("triple1", slice(None), 0.0),
+    "free-vibration": _damped,
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_solver_misses_a_bound(name, monkeypatch):
+    """The scene that is solved differs from what the answer expects by the least that should be noticed."""
+    problem = load_problem(name)
+    module = import_module(f"ddf.verify.{MODULES[name]}")
+    maker = "ply_scene" if hasattr(module, "ply_scene") else "case_scene"
+    right = getattr(scenes, maker)
+    monkeypatch.setattr(module, maker, lambda *a, **k: WRONG[name](right(*a, **k)))
+    assert not problem.solve(QUICK).passed
