@@ -178,13 +178,19 @@ def init(path: Path, force: bool) -> None:
 
 @main.command()
 @click.option("--json", "as_json", is_flag=True, help="JSON schema instead of Markdown.")
-def schema(as_json: bool) -> None:
+@click.option("--sweep", is_flag=True, help="The keys of a sweep file instead.")
+def schema(as_json: bool, sweep: bool) -> None:
     """Print every key of a case file: type, default, range, meaning.
 
     Example: ddf schema > keys.md
     """
-    from ddf.case.template import schema_json, schema_text
+    from ddf.case.template import keys_table, schema_json, schema_text
 
+    if sweep:
+        from ddf.sweep.file import SweepFile
+
+        click.echo(keys_table(SweepFile))
+        return
     click.echo(schema_json() if as_json else schema_text())
 
 

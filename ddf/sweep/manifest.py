@@ -7,6 +7,7 @@ outcomes.json, table.csv, pictures/*.png.
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -92,9 +93,15 @@ class SweepFolder:
             )
 
     def _clear(self) -> None:
-        if (self.path / MANIFEST).exists():
-            for entry in self.entries():
-                RunFolder(self.run_folder(entry.name)).empty()
+        """Remove what the cases of the manifest left."""
+        if not (self.path / MANIFEST).exists():
+            return
+        for entry in self.entries():
+            RunFolder(self.run_folder(entry.name)).empty()
+            with suppress(OSError):  # files of other programs stay, and their folder with them
+                self.run_folder(entry.name).rmdir()
+            for file in (self.case_file(entry.name), self.log_file(entry.name)):
+                file.unlink(missing_ok=True)
 
     def entries(self) -> list[Entry]:
         """The manifest's cases. Raises UsageError where it cannot be read."""

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from ddf.output.atomic import write_errors
-from ddf.run import default_threads
 from ddf.sweep.manifest import FAILED, FINISHED, INTERRUPTED, Entry, Outcome, SweepFolder
 from ddf.sweep.plan import Plan
 
 TELL_EVERY_S = 2.0
+MOST_THREADS = 8  # of a case, as `ddf run` takes by default
 LAST_WORDS = 300  # characters of a crashed process' log in its reason
 
 
@@ -34,12 +34,17 @@ class SweepProgress:
     elapsed_s: float
 
 
-def share_out(cases: int, workers: int | None, threads: int | None, cores: int) -> tuple[int, int]:
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def share_out(cases: int, workers: int | None, threads: int | None, available: int) -> tuple[int, int]:
     """Cases at once and threads of each: all cores in use and no more, unless more is asked for."""
     if workers is None:
-        workers = max(1, cores // (threads or 1))
+        workers = max(1, available // (threads or 1))
     workers = max(1, min(workers, cases))
-    return workers, threads or max(1, cores // workers)
+    return workers, threads or max(1, min(MOST_THREADS, available // workers))
 
 
 class Runner:
@@ -65,7 +70,7 @@ class Runner:
         if not todo:
             return
         began = clock.perf_counter()
-        workers, threads = share_out(len(todo), plan.workers, plan.threads, default_threads())
+        workers, threads = share_out(len(todo), plan.workers, plan.threads, cores())
         with ThreadPoolExecutor(workers) as pool:
             waiting: set[Future[None]] = {
                 pool.submit(self._one, name, threads, number == 0) for number, name in enumerate(todo)

@@ -9,7 +9,7 @@ from ddf.cli import main
 from ddf.errors import CaseError, DdfError
 from ddf.output.results import open_run
 from ddf.run import run_case
-from ddf.verify.kinematic_net import PROBLEM
+from ddf.verify import kinematic_net
 from ddf.verify.problem import Options
 
 CASE = """
@@ -99,6 +99,14 @@ def test_check_tells_whether_the_net_closes(file):
     assert done.output.count("100.0 %") == 2
 
 
-def test_verification_problem_passes():
-    answer = PROBLEM.solve(Options(quick=True))
-    assert answer.passed, [(c.quantity, c.error) for c in answer.checks]
+def test_report_is_drawn_again(file, tmp_path):
+    run_case(load_case(file, ["output.pictures=false"]), tmp_path / "run")
+    (tmp_path / "run" / "report.html").unlink()
+    assert CliRunner().invoke(main, ["report", str(tmp_path / "run")]).exit_code == 0
+    assert (tmp_path / "run" / "report.html").stat().st_size > 0
+
+
+def test_verification_notices_a_wrong_net(monkeypatch):
+    right = kinematic_net.drape_ply
+    monkeypatch.setattr(kinematic_net, "drape_ply", lambda ply, field, start: right(ply, field, start, 0.1))
+    assert not kinematic_net.PROBLEM.solve(Options(quick=True)).passed

@@ -163,3 +163,5 @@ def test_threads_are_shared_out():
     assert share_out(8, None, 2, 8) == (4, 2)
     assert share_out(8, 3, None, 8) == (3, 2)
     assert share_out(1, None, None, 8) == (1, 8)
+    assert share_out(2, None, None, 64) == (2, 8)
+    assert share_out(100, None, None, 64) == (64, 1)
