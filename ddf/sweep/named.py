@@ -28,7 +28,11 @@ def friction(case: Case) -> list[Point]:
 
 
 def loading(case: Case) -> list[Point]:
-    """Order of lifting the tool and evacuating the box (section 3.5): lift first, both at once, box first."""
+    """Order of lifting the tool and evacuating the box (section 3.5): lift first, both at once, box first.
+
+    Mass damping of the box's stage, which keeps the snap on the tool slow, goes with the snap: to the stage of
+    both, and with the box first to the lift too.
+    """
     stages = [stage.model_dump(exclude_none=True) for stage in case.process.stages or ()]
     lift = next((k for k, stage in enumerate(stages) if stage.get("tool_lift_mm")), None)
     box = next((k for k, stage in enumerate(stages) if "box_pressure_kPa" in stage), None)
@@ -40,16 +44,13 @@ def loading(case: Case) -> list[Point]:
         )
     first, second = sorted((lift, box))
     between, after = stages[first + 1 : second], stages[second + 1 :]
-    both = stages[box] | stages[lift] | {
-        "name": "lift-and-evacuate-box",
-        "duration_s": max(stages[lift]["duration_s"], stages[box]["duration_s"]),
-    }  # fmt: skip
-    if "mass_damping_1_s" in stages[box]:
-        both["mass_damping_1_s"] = stages[box]["mass_damping_1_s"]
+    damping = {key: stages[box][key] for key in ("mass_damping_1_s",) if key in stages[box]}
+    longest = max(stages[lift]["duration_s"], stages[box]["duration_s"])
+    both = stages[box] | stages[lift] | {"name": "lift-and-evacuate-box", "duration_s": longest} | damping
     orders = {
         "lift-then-vacuum": [stages[lift], *between, stages[box]],
         "together": [*between, both],
-        "vacuum-then-lift": [stages[box], *between, stages[lift]],
+        "vacuum-then-lift": [stages[box], *between, stages[lift] | damping],
     }
     return [Point(name, {"process.stages": [*stages[:first], *order, *after]}) for name, order in orders.items()]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ddf.case import load_case
 from ddf.case.faults import closest
-from ddf.errors import UsageError
+from ddf.errors import DdfError, UsageError
 from ddf.sweep.file import check_cases, load_sweep
 from ddf.sweep.manifest import FAILED, FINISHED, Outcome, SweepFolder
 from ddf.sweep.named import NAMED
@@ -98,6 +98,6 @@ def run_sweep(
         from ddf.sweep.pictures import draw_sweep
 
         draw_sweep(place, entries, runner.outcomes, rows, swept_keys(entries), plan.title)
-    except (ImportError, OSError, RuntimeError, ValueError) as error:
+    except (DdfError, ImportError, OSError, RuntimeError, ValueError) as error:
         notes.append(f"pictures are missing: {type(error).__name__}: {error}")
     return SweepResult(folder, list(runner.outcomes.values()), reused, notes)

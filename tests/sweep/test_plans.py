@@ -131,6 +131,8 @@ def test_ready_made_sweeps_change_what_they_say():
     lift_first, together, box_first = (case.process.stages for case in cases["loading"])
     assert [s.name for s in lift_first] == ["evacuate-cavity", "lift", "evacuate-box", "hold"]
     assert [s.name for s in box_first] == ["evacuate-cavity", "evacuate-box", "lift", "hold"]
+    assert [s.mass_damping_1_s for s in lift_first] == [None, None, 300.0, 300.0]
+    assert [s.mass_damping_1_s for s in box_first] == [None, 300.0, 300.0, 300.0]
     assert len(together) == 3
     assert (together[1].tool_lift_mm, together[1].box_pressure_kPa) == (82.0, 0.0)
     assert [[p.orientation_deg for p in case.plies] for case in cases["layup"]] == [[0], [45], [45, 0], [0, 45]]
