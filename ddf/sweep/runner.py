@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,7 +72,7 @@ class Runner:
             return
         began = clock.perf_counter()
         workers, threads = share_out(len(todo), plan.workers, plan.threads, cores())
-        with ThreadPoolExecutor(workers) as pool:
+        with _interruptible(), ThreadPoolExecutor(workers) as pool:
             waiting: set[Future[None]] = {
                 pool.submit(self._one, name, threads, number == 0) for number, name in enumerate(todo)
             }
@@ -154,6 +155,24 @@ class Runner:
             running = dict(self.shares)
             failed = sum(o.state == FAILED and name not in running for name, o in self.outcomes.items())
             return SweepProgress(len(states), states.count(FINISHED), failed, running, elapsed)
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """SIGINT and SIGTERM as KeyboardInterrupt, also where the shell had SIGINT ignored (a job in the background)."""
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    old: dict[int, Any] = {}
+    with suppress(ValueError):  # not in the main thread: leave signals alone
+        for number in (signal.SIGINT, signal.SIGTERM):
+            old[number] = signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for caught, handler in old.items():
+            signal.signal(caught, handler)
 
 
 def _words(line: str) -> dict[str, Any]:
