@@ -300,6 +300,9 @@ def compare(
 @_SET
 @click.option("--workers", type=click.IntRange(1, 1024), help="Cases at once  [default: as cores allow]")
 @click.option("--threads", type=click.IntRange(1, 1024), help="Threads of each case  [default: shared out]")
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, e.g. tcp://host:8786 (needs ddf[cluster])."
+)
 @click.option("--resume", is_flag=True, help="Run what is missing, interrupted or failed.")
 @click.option("--force", is_flag=True, help="Overwrite an earlier sweep in the folder.")
 @click.option("--list", "only_list", is_flag=True, help="Show the cases; run nothing.")
@@ -311,6 +314,7 @@ def sweep(
     overrides: tuple[str, ...],
     workers: int | None,
     threads: int | None,
+    scheduler: str | None,
     resume: bool,
     force: bool,
     only_list: bool,
@@ -333,7 +337,7 @@ def sweep(
     try:
         result = run_sweep(
             plan, folder, resume=resume, force=force, workers=workers, threads=threads,
-            report=None if quiet else _sweep_progress,
+            scheduler=scheduler, report=None if quiet else _sweep_progress,
         )  # fmt: skip
     except KeyboardInterrupt:
         click.echo(f"interrupted; go on with --resume -o {folder}", err=True)

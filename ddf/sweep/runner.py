@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time as clock
 from collections.abc import Callable, Iterator
@@ -15,13 +12,13 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
-from ddf.output.atomic import write_errors
+from ddf.sweep.cluster import run_on_cluster
 from ddf.sweep.manifest import FAILED, FINISHED, INTERRUPTED, Entry, Outcome, SweepFolder
 from ddf.sweep.plan import Plan
+from ddf.sweep.process import CaseProcess
 
 TELL_EVERY_S = 2.0
 MOST_THREADS = 8  # of a case, as `ddf run` takes by default
-LAST_WORDS = 300  # characters of a crashed process' log in its reason
 
 
 @dataclass(frozen=True)
@@ -56,7 +53,7 @@ class Runner:
         self.outcomes = {entry.name: folder.standing(entry) for entry in entries}
         self.entries = {entry.name: entry for entry in entries}
         self.shares: dict[str, float] = {}
-        self._processes: dict[str, subprocess.Popen[str]] = {}
+        self._processes: dict[str, CaseProcess] = {}
         self._lock = threading.Lock()
         self._warm = threading.Event()
         self._stopping = False
@@ -95,50 +92,44 @@ class Runner:
         began = clock.perf_counter()
         state, reason = self._process(name, threads)
         self._warm.set()
-        with self._lock:
-            self.shares.pop(name, None)
-            self.outcomes[name] = Outcome(name, state, reason, clock.perf_counter() - began)
-            self.folder.write_outcomes(self.outcomes)
+        self._note(Outcome(name, state, reason, clock.perf_counter() - began))
 
     def _process(self, name: str, threads: int) -> tuple[str, str]:
         """Run a case's process to its end; its state and, where it failed, why."""
-        how = "go-on" if self.outcomes[name].state == INTERRUPTED else "anew"
-        log = self.folder.log_file(name)
-        with write_errors(log):
-            log.parent.mkdir(parents=True, exist_ok=True)
-        command = [sys.executable, "-m", "ddf.sweep.worker", str(self.folder.case_file(name)),
-                   str(self.folder.run_folder(name)), str(threads), how]  # fmt: skip
-        limits = {key: str(threads) for key in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-        end: dict[str, Any] = {}
-        with log.open("w", encoding="utf-8") as errors:
-            process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, text=True,
-                env=os.environ | limits,
-            )  # fmt: skip
-            with self._lock:
-                self._processes[name] = process
-                self.shares[name] = 0.0
-            assert process.stdout is not None
-            for line in process.stdout:
-                words = _words(line)
-                if "steps" in words:
-                    self._warm.set()
-                    self.shares[name] = words["step"] / max(words["steps"], 1)
-                end = words if "end" in words else end
-            code = process.wait()
-            if process.stdin is not None:
-                with suppress(OSError):
-                    process.stdin.close()
+        place, go_on = self.folder, self.outcomes[name].state == INTERRUPTED
+        process = CaseProcess(place.case_file(name), place.run_folder(name), place.log_file(name), threads, go_on)
         with self._lock:
-            self._processes.pop(name)
-        if end.get("end") in (FINISHED, INTERRUPTED):
-            return end["end"], ""
-        if end:
-            return FAILED, end["message"]
-        if self._stopping:
-            return INTERRUPTED, ""
-        said = log.read_text(encoding="utf-8", errors="replace").strip()[-LAST_WORDS:]
-        return FAILED, f"its process ended with code {code}" + (f": {said}" if said else "")
+            self._processes[name] = process
+            self.shares[name] = 0.0
+
+        def told(share: float) -> None:
+            self._warm.set()
+            self.shares[name] = share
+
+        try:
+            return process.follow(told)
+        finally:
+            with self._lock:
+                self._processes.pop(name)
+
+    def run_on_cluster(self, address: str, plan: Plan, report: Callable[[SweepProgress], None] | None = None) -> None:
+        """Run all that is to do on a Dask cluster. Raises UsageError where there is none."""
+        todo = [self.outcomes[name] for name in self.to_do()]
+        began = clock.perf_counter()
+        for outcome in todo:
+            self.shares[outcome.name] = 0.0
+
+        def look() -> None:
+            if report is not None:
+                report(self._progress(clock.perf_counter() - began))
+
+        run_on_cluster(address, self.folder, todo, plan.threads or 1, self._note, look)
+
+    def _note(self, outcome: Outcome) -> None:
+        with self._lock:
+            self.shares.pop(outcome.name, None)
+            self.outcomes[outcome.name] = outcome
+            self.folder.write_outcomes(self.outcomes)
 
     def _stop(self) -> None:
         """Ask all cases to write a checkpoint and end."""
@@ -146,7 +137,7 @@ class Runner:
         self._warm.set()
         with self._lock:
             for process in self._processes.values():
-                process.terminate()
+                process.stop()
 
     def _progress(self, elapsed: float) -> SweepProgress:
         with self._lock:
@@ -173,12 +164,3 @@ def _interruptible() -> Iterator[None]:
     finally:
         for caught, handler in old.items():
             signal.signal(caught, handler)
-
-
-def _words(line: str) -> dict[str, Any]:
-    """A JSON line of a worker; empty for anything else that a library prints."""
-    try:
-        words = json.loads(line)
-    except ValueError:
-        return {}
-    return words if isinstance(words, dict) else {}

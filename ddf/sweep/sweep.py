@@ -77,19 +77,24 @@ def run_sweep(
     force: bool = False,
     workers: int | None = None,
     threads: int | None = None,
+    scheduler: str | None = None,
     report: Callable[[SweepProgress], None] | None = None,
 ) -> SweepResult:
     """Run what of a sweep has not finished yet, then write its table and pictures.
 
-    Raises UsageError for a folder in use or of another sweep. A KeyboardInterrupt goes through, after the cases
-    have written their checkpoints.
+    `scheduler`: address of a Dask scheduler that runs the cases (threads of each: 1, unless given), else they
+    run in local processes. Raises UsageError for a folder in use or of another sweep. A KeyboardInterrupt goes
+    through, after the cases have written their checkpoints.
     """
     plan = replace(plan, workers=workers or plan.workers, threads=threads or plan.threads)
     place = SweepFolder(folder)
     entries = place.prepare(plan, resume, force)
     runner = Runner(place, entries)
     reused = len(entries) - len(runner.to_do())
-    runner.run(plan, report)
+    if scheduler is None:
+        runner.run(plan, report)
+    else:
+        runner.run_on_cluster(scheduler, plan, report)
     place.write_outcomes(runner.outcomes)
     rows = sweep_rows(place, entries, runner.outcomes)
     write_rows(place, rows)
