@@ -1,7 +1,7 @@
 """The command line: a thin layer over the Python API, and the only place that prints.
 
 Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy limit; 4 a verification missed
-its bound; 130 interrupted.
+its bound; 5 some cases of a sweep failed; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import click
 from ddf import __version__
 from ddf.errors import DdfError
 
-INTERRUPTED = 130
 MISSED = 4
+SOME_FAILED = 5
+INTERRUPTED = 130
 
 
 class _Commands(click.Group):
@@ -82,7 +83,7 @@ def run(
     loaded = load_case(case, overrides)
     folder = output if output is not None else Path("runs") / case.stem
     text = None if overrides else case.read_text(encoding="utf-8")
-    if not quiet:
+    if not quiet and loaded.model == "forming":
         click.echo("meshing, then compiling the kernels (about a minute the first time) ...", err=True)
     result = run_case(
         loaded, folder, case_text=text, threads=threads, resume=resume, force=force,
@@ -114,17 +115,29 @@ def _summary(result: Any) -> None:
     wall = ", ".join(f"{name} {seconds:.1f} s" for name, seconds in result.wall_s.items())
     click.echo(f"wall time: {wall}")
     for values in result.plies:
-        click.echo(
-            f"{values['ply']}: {values['wrinkle_count']} wrinkles, {values['wrinkle_total_length_mm']:.0f} mm in all, "
-            f"largest {values['wrinkle_largest_amplitude_mm']:.1f} mm high; shear up to "
-            f"{values['shear_max_deg']:.1f} deg; largest gap to the tool {values['bridging_largest_mm'] or 0.0:.1f} mm"
-        )
+        click.echo(_net_line(values) if "locked_area_percent" in values else _formed_line(values))
     for check in result.checks:
         mark = "ok  " if check["ok"] else "WARN"
         click.echo(f"{mark} {check['name']}: {check['value']:.3g} {check['unit']} (limit {check['limit']:g})")
     for note in result.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {result.folder / 'report.html'}")
+
+
+def _formed_line(values: dict[str, Any]) -> str:
+    return (
+        f"{values['ply']}: {values['wrinkle_count']} wrinkles, {values['wrinkle_total_length_mm']:.0f} mm in all, "
+        f"largest {values['wrinkle_largest_amplitude_mm']:.1f} mm high; shear up to "
+        f"{values['shear_max_deg']:.1f} deg; largest gap to the tool {values['bridging_largest_mm'] or 0.0:.1f} mm"
+    )
+
+
+def _net_line(values: dict[str, Any]) -> str:
+    return (
+        f"{values['ply']}: shear up to {values['shear_max_deg']:.1f} deg, mean {values['shear_mean_deg']:.1f} deg; "
+        f"{values['locked_area_percent']:.1f} % of the area beyond {values['locking_deg']:g} deg (locked); "
+        f"net from ({values['start_x_mm']:.4g}, {values['start_y_mm']:.4g}, {values['start_z_mm']:.4g}) mm"
+    )
 
 
 @main.command()
@@ -138,8 +151,10 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
     from ddf.build import build_scene
     from ddf.case import load_case
     from ddf.describe import describe_scene
+    from ddf.net_run import describe_net
 
-    click.echo(describe_scene(build_scene(load_case(case, overrides))))
+    loaded = load_case(case, overrides)
+    click.echo(describe_net(loaded) if loaded.model == "kinematic" else describe_scene(build_scene(loaded)))
 
 
 @main.command()
@@ -163,13 +178,19 @@ def init(path: Path, force: bool) -> None:
 
 @main.command()
 @click.option("--json", "as_json", is_flag=True, help="JSON schema instead of Markdown.")
-def schema(as_json: bool) -> None:
+@click.option("--sweep", is_flag=True, help="The keys of a sweep file instead.")
+def schema(as_json: bool, sweep: bool) -> None:
     """Print every key of a case file: type, default, range, meaning.
 
     Example: ddf schema > keys.md
     """
-    from ddf.case.template import schema_json, schema_text
+    from ddf.case.template import keys_table, schema_json, schema_text
 
+    if sweep:
+        from ddf.sweep.file import SweepFile
+
+        click.echo(keys_table(SweepFile))
+        return
     click.echo(schema_json() if as_json else schema_text())
 
 
@@ -239,3 +260,110 @@ def verify(
     click.echo(f"{len(chosen) - len(missed)} of {len(chosen)} problems within their bounds; results in {output}")
     if missed:
         _fail(f"missed: {', '.join(missed)}", MISSED)
+
+
+@main.command()
+@click.argument("first", metavar="A", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.argument("second", metavar="B", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.option(
+    "--profile",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Measured outline: CSV of x, y in mm.",
+)
+@click.option("--align", is_flag=True, help="Lay the measured outline on each run by the best rigid fit.")
+@click.option("--ply", help="Ply that was measured  [default: the top one]")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder  [default: runs/compare-A-B]")
+@click.option("--force", is_flag=True, help="Overwrite an earlier comparison in the folder.")
+def compare(
+    first: Path, second: Path, profile: Path | None, align: bool, ply: str | None, output: Path | None, force: bool
+) -> None:
+    """Compare two finished runs: outlines, wrinkles site by site, shear; and a measured outline with both.
+
+    Example: ddf compare runs/first runs/fine --profile measured.csv --align
+    """
+    from ddf.compare.runs import compare_runs
+    from ddf.compare.text import comparison_lines
+
+    if (align or ply) and profile is None:
+        raise click.UsageError("--align and --ply need --profile")
+    folder = output or Path("runs") / f"compare-{first.resolve().name}-{second.resolve().name}"
+    result = compare_runs(first, second, folder, profile, align, ply, force)
+    for line in comparison_lines(result):
+        click.echo(line)
+    click.echo(f"tables and pictures: {folder}")
+
+
+@main.command()
+@click.argument("what", metavar="NAME|FILE")
+@click.option("--case", type=click.Path(path_type=Path), help="Base case of a ready-made sweep.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder  [default: runs/sweep-NAME]")
+@_SET
+@click.option("--workers", type=click.IntRange(1, 1024), help="Cases at once  [default: as cores allow]")
+@click.option("--threads", type=click.IntRange(1, 1024), help="Threads of each case  [default: shared out]")
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, e.g. tcp://host:8786 (needs ddf[cluster])."
+)
+@click.option("--resume", is_flag=True, help="Run what is missing, interrupted or failed.")
+@click.option("--force", is_flag=True, help="Overwrite an earlier sweep in the folder.")
+@click.option("--list", "only_list", is_flag=True, help="Show the cases; run nothing.")
+@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+def sweep(
+    what: str,
+    case: Path | None,
+    output: Path | None,
+    overrides: tuple[str, ...],
+    workers: int | None,
+    threads: int | None,
+    scheduler: str | None,
+    resume: bool,
+    force: bool,
+    only_list: bool,
+    quiet: bool,
+) -> None:
+    """Run a case under many changes: friction, loading, layup, tool, mesh, or a sweep file.
+
+    Leaves a manifest, a folder a case, one table and comparing pictures.
+    Example: ddf sweep friction -o runs/friction
+    """
+    from ddf.sweep.plan import assignments
+    from ddf.sweep.sweep import make_plan, run_sweep
+
+    plan = make_plan(what, case, overrides)
+    if only_list:
+        for point in plan.points:
+            click.echo(f"{point.name}: {', '.join(assignments(point.changes))}")
+        return
+    folder = output or Path("runs") / f"sweep-{Path(what).stem}"
+    try:
+        result = run_sweep(
+            plan, folder, resume=resume, force=force, workers=workers, threads=threads,
+            scheduler=scheduler, report=None if quiet else _sweep_progress,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        click.echo(f"interrupted; go on with --resume -o {folder}", err=True)
+        sys.exit(INTERRUPTED)
+    if not quiet and sys.stderr.isatty():
+        click.echo("", err=True)
+    computed = len(result.finished) - result.reused
+    click.echo(
+        f"{len(result.outcomes)} cases: {computed} computed, {result.reused} reused, {len(result.failed)} failed"
+    )
+    for outcome in result.failed:
+        click.echo(f"failed: {outcome.name}: {outcome.reason}")
+    for note in result.notes:
+        click.echo(f"note: {note}")
+    click.echo(f"table: {folder / 'table.csv'}; pictures: {folder / 'pictures'}")
+    if result.failed:
+        sys.exit(SOME_FAILED)
+
+
+def _sweep_progress(p: Any) -> None:
+    running = ", ".join(f"{name} {100 * share:.0f} %" for name, share in p.running.items())
+    line = (
+        f"{p.finished} of {p.cases} finished, {p.failed} failed; running {running or 'none'}; "
+        f"elapsed {p.elapsed_s:.0f} s"
+    )
+    if sys.stderr.isatty():
+        click.echo("\r" + line.ljust(140)[:200], nl=False, err=True)
+    else:
+        click.echo(line, err=True)

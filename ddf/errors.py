@@ -40,14 +40,14 @@ class Fault:
 
 
 class CaseError(DdfError):
-    """An invalid case file; carries all its faults at once."""
+    """An invalid case or sweep file; carries all its faults at once."""
 
     exit_code = 2
 
-    def __init__(self, faults: list[Fault]) -> None:
+    def __init__(self, faults: list[Fault], what: str = "case") -> None:
         self.faults = faults
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        super().__init__(f"{count} in the case\n" + "\n".join(f"  {fault}" for fault in faults))
+        super().__init__(f"{count} in the {what}\n" + "\n".join(f"  {fault}" for fault in faults))
 
 
 class UsageError(DdfError):

@@ -11,6 +11,7 @@ from ddf.errors import DdfError
 from ddf.metrics import PlySurface, WrinkleResult, find_wrinkles, ply_metrics
 from ddf.monitors.audit import Check, audit
 from ddf.monitors.energy import Energies, energies
+from ddf.net_run import run_net
 from ddf.output.checkpoint import load_checkpoint
 from ddf.output.folder import RunFolder
 from ddf.output.results import open_run
@@ -103,11 +104,15 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
 
 
 def rebuild_report(path: Path) -> Path:
-    """Measure, draw and report a run again from its last checkpoint; returns the report's path."""
+    """Measure, draw and report a run again from its last checkpoint (a net: lay it again); returns the report."""
     import tomllib
 
     run = open_run(path)
-    scene = build_scene(case_from_dict(tomllib.loads(run.resolved_text)))
+    case = case_from_dict(tomllib.loads(run.resolved_text))
+    if case.model == "kinematic":
+        run_net(case, path, case_text=run.case_text, replace=True)
+        return path / "report.html"
+    scene = build_scene(case)
     out = RunFolder(path)
     load_checkpoint(out, scene)
     time = float(scene.state.clock[1])

@@ -23,6 +23,7 @@ from ddf.errors import UnstableError
 from ddf.monitors.audit import Check
 from ddf.monitors.energy import Energies, energies
 from ddf.monitors.stability import check_state
+from ddf.net_run import run_net
 from ddf.output.checkpoint import load_checkpoint, save_checkpoint
 from ddf.output.folder import RunFolder
 from ddf.output.snapshot import take_snapshot
@@ -127,7 +128,11 @@ def run_case(
     Raises CaseError, MeshError, UsageError before the run, UnstableError when a guard stops it (all output so
     far and the last good checkpoint are kept). On SIGINT or SIGTERM a checkpoint is written and
     stop_reason is "interrupted"; `resume=True` goes on, bit for bit as if nothing had happened.
+    A case of the model "kinematic" is draped as a net instead (`net_run`), in one go.
     """
+    if case.model == "kinematic":
+        net = run_net(case, folder, case_text=case_text, replace=force or resume)
+        return RunResult(Path(folder), "finished", 0, 0.0, net.wall_s, plies=net.plies, notes=net.notes)
     watch = _Stopwatch()
     out = RunFolder.create(folder, force=force, resume=resume)
     with watch("mesh"):

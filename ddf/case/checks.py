@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from ddf.case import schema
-from ddf.case.checks_geometry import ply_problems, tool_problems
+from ddf.case.checks_geometry import ply_problems, start_problems, tool_problems
 from ddf.case.faults import KINDS, Problem, closest
 from ddf.case.preset_data import PRESET_DATA
 from ddf.case.schema import with_ply_names
@@ -36,6 +36,7 @@ class Parts:
     diaphragms: schema.Diaphragms | None
     plies: list[schema.Ply | None]
     tool: schema.Tool | None
+    kinematic: schema.Kinematic | None
     breakpoints: schema.Breakpoints | None
     shear_tables: dict[str, schema.ShearTable | None]
     rubbers: dict[str, schema.HyperelasticMaterial | None]
@@ -50,6 +51,7 @@ def valid_parts(raw: dict[str, Any]) -> Parts:
         diaphragms=_valid(schema.Diaphragms.model_validate, raw.get("diaphragms", {})),
         plies=[_valid(schema.Ply.model_validate, _outline_keys(ply)) for ply in _items(raw, "plies")],
         tool=_valid(schema.Tool.model_validate, raw.get("tool")),
+        kinematic=_valid(schema.Kinematic.model_validate, raw.get("kinematic", {})),
         breakpoints=_valid(schema.Breakpoints.model_validate, _table(raw, "process").get("breakpoints")),
         shear_tables={
             name: _valid(schema.ShearTable.model_validate, table.get("shear_table"))
@@ -66,6 +68,8 @@ def cross_problems(raw: dict[str, Any], parts: Parts) -> list[Problem]:
     for place, ply in enumerate(parts.plies):
         if ply is not None and (ply.size_mm is None) != (ply.polygon_mm is None):
             found += ply_problems(ply, ("plies", place), parts.frame)
+            if raw.get("model") == "kinematic" and parts.kinematic is not None:
+                found += start_problems(ply, parts.kinematic.start_mm, place)
     if parts.tool is not None:
         found += tool_problems(parts.tool, parts.frame)
     if parts.diaphragms and parts.diaphragms.element_max_mm < parts.diaphragms.element_mm:

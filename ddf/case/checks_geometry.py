@@ -90,6 +90,16 @@ def _overlap(a: tuple[tuple[float, float], ...], b: tuple[tuple[float, float], .
     return bool(inside(a[:1], b)[0] or inside(b[:1], a)[0])
 
 
+def start_problems(ply: Ply, start: tuple[float, float] | None, place: int) -> Iterator[Problem]:
+    """Check that a net starts on the ply (for None: at its centre)."""
+    at = ply.offset_mm if start is None else start
+    local = ((at[0] - ply.offset_mm[0], at[1] - ply.offset_mm[1]),)
+    outline = tuple((x - ply.offset_mm[0], y - ply.offset_mm[1]) for x, y in ply.outline_mm())
+    if not inside(local, outline).all() or any(inside(local, hole).all() for hole in ply.holes_mm):
+        problem = f"({at[0]:g}, {at[1]:g}) mm is not on the fabric of plies.{place}"
+        yield Problem(("kinematic", "start_mm"), problem, "a place on every ply")
+
+
 def tool_problems(tool: Tool, frame: Frame | None) -> Iterator[Problem]:
     """Check that the tool stands inside the frame and that its fillet fits on it."""
     if any(getattr(tool, key) is None for key in REQUIRED_KEYS[tool.shape]):

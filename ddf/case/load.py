@@ -30,8 +30,8 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
     0, as in "plies.0.element_mm=4". Raises CaseError with every fault found.
     """
     file = str(path)
-    text = _read(Path(path), file)
-    raw = _parse(text, file)
+    text = read_text(Path(path), file)
+    raw = parse_toml(text, file)
     raw, changes, faults = apply_overrides(raw, overrides)
     return _build(raw, file, locate(text), changes, faults)
 
@@ -66,7 +66,7 @@ def _without_none(value: Any) -> Any:
     return value
 
 
-def _read(path: Path, file: str) -> str:
+def read_text(path: Path, file: str) -> str:
     """Return the text of a file; raises CaseError where it cannot be a case."""
     try:
         if path.is_dir():
@@ -94,7 +94,7 @@ def _refusal(file: str, problem: str, allowed: str, suggestion: str = "") -> Cas
     return CaseError([Fault(file, 1, "", problem, allowed, suggestion)])
 
 
-def _parse(text: str, file: str) -> dict[str, Any]:
+def parse_toml(text: str, file: str) -> dict[str, Any]:
     """Return the tables of a TOML text; raises CaseError with the line where it is not TOML."""
     try:
         return tomllib.loads(text)

@@ -6,12 +6,13 @@ material of the right kind) is checked where a case is loaded, so build one with
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 from ddf.case.diaphragms import Diaphragms, Frame, Friction
+from ddf.case.kinematic import Kinematic
 from ddf.case.materials import HyperelasticMaterial, Material, OgdenTerm, ShearTable, WovenMaterial
 from ddf.case.output import Output
 from ddf.case.plies import Ply
@@ -26,6 +27,7 @@ __all__ = [
     "Frame",
     "Friction",
     "HyperelasticMaterial",
+    "Kinematic",
     "Material",
     "OgdenTerm",
     "Output",
@@ -43,6 +45,11 @@ class Case(Section):
     """Everything that defines a run. Lengths in mm, angles in deg, absolute pressures in kPa, times in s."""
 
     title: str = Field(default="", max_length=500, description="What the case is, for reports.")
+    model: Literal["forming", "kinematic"] = Field(
+        default="forming",
+        description="'forming': the explicit forming simulation; 'kinematic': each ply draped by itself as a "
+        "pin-jointed net, in milliseconds, without diaphragms, forces and wrinkles.",
+    )
     frame: Frame = Field(default=Frame(), description="The clamping frame.")
     diaphragms: Diaphragms = Field(default=Diaphragms(), description="Both diaphragms.")
     materials: dict[str, Material] = Field(
@@ -53,14 +60,23 @@ class Case(Section):
     )
     friction: Friction = Field(default=Friction(), description="Friction between layers.")
     tool: Tool | None = Field(default=None, description="The tool; left out: none.")
-    process: Process = Field(description="Pressures and lift over time.")
+    process: Process = Field(description="Pressures and lift over time; model 'kinematic' does without.")
     solver: Solver = Field(default=Solver(), description="The explicit solver.")
+    kinematic: Kinematic = Field(default=Kinematic(), description="The kinematic model.")
     output: Output = Field(default=Output(), description="What is written.")
 
     @model_validator(mode="before")
     @classmethod
     def _name_plies(cls, raw: Any) -> Any:
         return with_ply_names(raw)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_process(cls, raw: Any) -> Any:
+        """A kinematic case without a process gets one that does nothing."""
+        if isinstance(raw, dict) and raw.get("model") == "kinematic" and "process" not in raw:
+            return raw | {"process": {"stages": [{"name": "drape", "duration_s": 1.0}]}}
+        return raw
 
 
 def with_ply_names(raw: Any) -> Any:

@@ -28,6 +28,7 @@ _TABLES: tuple[tuple[str, type[Section]], ...] = (
     ("[[process.stages]]", schema.Stage),
     ("[process.breakpoints]", schema.Breakpoints),
     ("[solver]", schema.Solver),
+    ("[kinematic]", schema.Kinematic),
     ("[output]", schema.Output),
 )
 _HEADING = "| key | type | default | range | meaning |\n|---|---|---|---|---|"
@@ -43,11 +44,15 @@ def schema_text() -> str:
     ]
     for heading, section in _TABLES:
         purpose = (section.__doc__ or "").strip().splitlines()[0]
-        rows = [_row(key, node, section) for key, node in properties(section).items()]
-        parts += [f"## `{heading}`", purpose, "\n".join([_HEADING, *rows])]
+        parts += [f"## `{heading}`", purpose, keys_table(section)]
     parts += ["## Material presets"]
     parts += ["\n".join(f"- `{name}`: {source}" for name, source in PRESET_SOURCES.items())]
     return "\n\n".join(parts) + "\n"
+
+
+def keys_table(section: type[Section]) -> str:
+    """Return the keys of one table as a Markdown table."""
+    return "\n".join([_HEADING, *(_row(key, node, section) for key, node in properties(section).items())])
 
 
 def schema_json() -> str:

@@ -45,6 +45,7 @@ SECTIONS: dict[str, type[Section]] = {
     "tool": schema.Tool,
     "process": schema.Process,
     "solver": schema.Solver,
+    "kinematic": schema.Kinematic,
     "output": schema.Output,
 }
 

@@ -3,7 +3,7 @@
 from ddf.metrics.boundary import BoundaryProfile, boundary_profile, draw_in, outline_area, outline_length
 from ddf.metrics.bridging import Bridging, find_bridging
 from ddf.metrics.shear import fibre_strain, fibre_strain_range, shear_angle, shear_statistics
-from ddf.metrics.summary import ply_metrics, wrinkle_row
+from ddf.metrics.summary import outline_numbers, ply_metrics, wrinkle_row
 from ddf.metrics.surface import PlySurface
 from ddf.metrics.wrinkles import Wrinkle, WrinkleResult, find_wrinkles
 
@@ -21,6 +21,7 @@ __all__ = [
     "find_wrinkles",
     "outline_area",
     "outline_length",
+    "outline_numbers",
     "ply_metrics",
     "shear_angle",
     "shear_statistics",

@@ -29,7 +29,7 @@ def ply_metrics(
     low, high = fibre_strain_range(surface)
     return {
         "ply": surface.name,
-        **_outline_numbers(surface),
+        **outline_numbers(surface),
         **shear_statistics(surface),
         "fibre_strain_min": low,
         "fibre_strain_max": high,
@@ -57,7 +57,8 @@ def wrinkle_row(wrinkle: Wrinkle) -> dict[str, Any]:
     return row
 
 
-def _outline_numbers(surface: PlySurface) -> dict[str, Any]:
+def outline_numbers(surface: PlySurface) -> dict[str, Any]:
+    """Area, length and draw-in of the outline."""
     profile = boundary_profile(surface)
     inward = draw_in(surface)
     return {

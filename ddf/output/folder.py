@@ -12,6 +12,8 @@ import numpy as np
 from ddf.errors import UsageError
 from ddf.output import atomic
 
+#: subfolders and the ending of what is in them
+SUBFOLDERS = {"frames": "vtu", "profiles": "csv", "patterns": "csv", "pictures": "png"}
 #: what ddf writes into a folder, as patterns from its top: all that --force removes
 KNOWN = (
     "case.toml",
@@ -21,16 +23,16 @@ KNOWN = (
     "history.csv",
     "wrinkles.csv",
     "metrics.json",
+    "metrics.csv",
+    "comparison.json",
     "checkpoint.npz",
     "report.html",
     "*.pvd",
-    "frames/*.vtu",
-    "profiles/*.csv",
-    "pictures/*.png",
-    *(f"{folder}{atomic.TEMPORARY_PREFIX}*" for folder in ("", "frames/", "profiles/", "pictures/")),
+    *(f"{inner}/*.{ending}" for inner, ending in SUBFOLDERS.items()),
+    *(f"{inner}{atomic.TEMPORARY_PREFIX}*" for inner in ("", *(f"{inner}/" for inner in SUBFOLDERS))),
 )
 #: at least one of these is in any folder that a run was started in
-MARKS = ("run.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
+MARKS = ("run.json", "comparison.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
 
 
 class RunFolder:
@@ -73,7 +75,7 @@ class RunFolder:
                 for file in self.path.glob(pattern):
                     if file.is_file() or file.is_symlink():
                         file.unlink()
-            for name in ("frames", "profiles", "pictures"):
+            for name in SUBFOLDERS:
                 inner = self.path / name
                 if inner.is_dir() and not inner.is_symlink() and not any(inner.iterdir()):
                     inner.rmdir()

@@ -53,7 +53,7 @@ def draw_shear(surface: PlySurface, box: Box | None = None) -> Any:
     """Map of the shear angle [deg] on the formed ply; range fixed to +-60 deg."""
     figure, axes, view, frame = _ply_map(surface, f"{surface.name}: shear angle", box)
     image = view.cells(shear_angle(surface))
-    bar = _coloured(figure, axes, view, surface, image, "PuOr", (-SHEAR_RANGE_DEG, SHEAR_RANGE_DEG))
+    bar = coloured(figure, axes, view, surface, image, "PuOr", (-SHEAR_RANGE_DEG, SHEAR_RANGE_DEG))
     bar.set_label("shear angle [deg], positive: families closer than 90 deg", fontsize=9)
     bar.set_ticks(np.arange(-60, 61, 15))
     figures.scale_bar(axes, frame)
@@ -64,7 +64,7 @@ def draw_distance(surface: PlySurface, box: Box | None = None) -> Any:
     """Map of the distance to tool and platform [mm], 0 where the ply conforms; range 0 to 10 mm."""
     figure, axes, view, frame = _ply_map(surface, f"{surface.name}: distance to the tool", box)
     image = view.nodes(fill_inactive(gap_field(surface), surface.active))
-    bar = _coloured(figure, axes, view, surface, image, "YlGnBu", (0.0, DISTANCE_RANGE_MM), extend="max")
+    bar = coloured(figure, axes, view, surface, image, "YlGnBu", (0.0, DISTANCE_RANGE_MM), extend="max")
     bar.set_label("distance to tool and platform [mm], 0 where it conforms", fontsize=9)
     figures.scale_bar(axes, frame)
     return figure
@@ -148,7 +148,7 @@ def _ply_map(surface: PlySurface, title: str, box: Box | None) -> tuple[Any, Any
     return figure, axes, view, frame
 
 
-def _coloured(
+def coloured(
     figure: Any, axes: Any, view: TopView, surface: PlySurface, image: Array, colours: str,
     limits: tuple[float, float], extend: str = "neither",
 ) -> Any:  # fmt: skip

@@ -41,6 +41,7 @@ PLY_ROWS = (
     ("shear_p99_deg", "99th percentile of the shear angle [deg]"),
     ("shear_p95_deg", "95th percentile of the shear angle [deg]"),
     ("shear_mean_deg", "mean shear angle [deg]"),
+    ("locked_area_percent", "area sheared beyond locking [%]"),
     ("fibre_strain_min", "least fibre strain [-]"),
     ("fibre_strain_max", "largest fibre strain [-]"),
     ("outline_initial_area_mm2", "outline, area before [mm²]"),

@@ -101,7 +101,7 @@ def ply_surface(scene: Scene, state: State | Array, k: int, time_s: float | None
     start[2] = initial_z_mm(scene, k)
     return PlySurface(
         name=scene.sheets[k].name,
-        x=_extrapolated(np.array(x, dtype=float), mesh.active),
+        x=extrapolated(np.array(x, dtype=float), mesh.active),
         x0=start,
         spacing=mesh.spacing,
         active=mesh.active,
@@ -113,7 +113,7 @@ def ply_surface(scene: Scene, state: State | Array, k: int, time_s: float | None
     )
 
 
-def _extrapolated(x: Array, active: Mask) -> Array:
+def extrapolated(x: Array, active: Mask) -> Array:
     """X (3, n, m) with nodes next to the ply at the mean of the lines 2 x1 - x2 through its nearest nodes."""
     known = active.copy()
     n, m = known.shape

@@ -90,6 +90,22 @@ def write_profiles(folder: RunFolder, surfaces: Iterable[PlySurface]) -> None:
         _write(folder, f"profiles/{surface.name}.csv", header, rows)
 
 
+def write_pattern(folder: RunFolder, surface: PlySurface) -> None:
+    """Write the flat pattern of a ply and where each of its points went.
+
+    patterns/<ply>.csv: the outline to cut, loops in order (u, v: grid coordinates; x0, y0 [mm]).
+    patterns/<ply>-nodes.csv: every node of the lattice, flat (x0 ..) and on the tool (x ..) [mm].
+    """
+    loops = boundary_profile(surface).initial
+    rows: list[list[Any]] = []
+    for loop, (points, grid) in enumerate(zip(loops, surface.outline, strict=True), start=1):
+        rows += [[loop, k, *uv, *flat[:2]] for k, (flat, uv) in enumerate(zip(points, grid, strict=False), start=1)]
+    _write(folder, f"patterns/{surface.name}.csv", ["loop", "point", "u", "v", "x0_mm", "y0_mm"], rows)
+    header = ["row", "col", "x0_mm", "y0_mm", "x_mm", "y_mm", "z_mm"]
+    nodes = [[int(i), int(j), *surface.x0[:2, i, j], *surface.x[:, i, j]] for i, j in np.argwhere(surface.active)]
+    _write(folder, f"patterns/{surface.name}-nodes.csv", header, nodes)
+
+
 def write_wrinkles(folder: RunFolder, results: Iterable[WrinkleResult]) -> None:
     """Write wrinkles.csv: one row a wrinkle, numbered within its ply by falling amplitude as in the pictures."""
     blank = {name: np.zeros(3) for name in ("start", "end", "crest")}

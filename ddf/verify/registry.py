@@ -33,6 +33,7 @@ MODULES: dict[str, str] = {
     "capstan": "capstan",
     "momentum": "momentum",
     "hemisphere": "hemisphere",
+    "kinematic-net": "kinematic_net",
 }
 
 

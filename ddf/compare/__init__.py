@@ -1,0 +1,1 @@
+"""Two finished runs, and a measured outline, against each other."""

@@ -1,0 +1,101 @@
+"""Ready-made sweeps, after the parameter studies of Thompson, Belnoue and Hallett (2020) and what is unknown there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ddf.case import Case, Ply
+from ddf.case.tool import TETRAHEDRA
+from ddf.errors import UsageError
+from ddf.sweep.plan import Point
+
+PLY_FRICTION = (0.0, 0.14, 0.28, 0.42)  # 0.28 measured, 0 compared with it in section 3.4
+FILLETS_MM = (2.5, 5.0, 10.0)
+MESH_FACTORS = (2.0, 1.5, 1.0, 0.75)
+
+
+def friction(case: Case) -> list[Point]:
+    """Friction between the plies of a double lay-up, 0 to 0.42 (section 3.4: 0.28 against 0).
+
+    A case of one ply gets a second one like it below, turned by 45 deg.
+    """
+    layup: dict[str, Any] = {}
+    if len(case.plies) == 1:
+        angle = case.plies[0].orientation_deg
+        layup = {"plies": _layup(case.plies[0], (angle + 45.0, angle))}
+    return [Point(f"friction-{mu:g}", layup | {"friction.ply_ply": mu}) for mu in PLY_FRICTION]
+
+
+def loading(case: Case) -> list[Point]:
+    """Order of lifting the tool and evacuating the box (section 3.5): lift first, both at once, box first.
+
+    Mass damping of the box's stage, which keeps the snap on the tool slow, goes with the snap: to the stage of
+    both, and with the box first to the lift too.
+    """
+    stages = [stage.model_dump(exclude_none=True) for stage in case.process.stages or ()]
+    lift = next((k for k, stage in enumerate(stages) if stage.get("tool_lift_mm")), None)
+    box = next((k for k, stage in enumerate(stages) if "box_pressure_kPa" in stage), None)
+    if lift is None or box is None or lift == box:
+        raise UsageError(
+            "the sweep 'loading' needs a case whose process has a stage that lifts the tool and another that "
+            "evacuates the box",
+            "choose another case with --case",
+        )
+    first, second = sorted((lift, box))
+    between, after = stages[first + 1 : second], stages[second + 1 :]
+    damping = {key: stages[box][key] for key in ("mass_damping_1_s",) if key in stages[box]}
+    longest = max(stages[lift]["duration_s"], stages[box]["duration_s"])
+    both = stages[box] | stages[lift] | {"name": "lift-and-evacuate-box", "duration_s": longest} | damping
+    orders = {
+        "lift-then-vacuum": [stages[lift], *between, stages[box]],
+        "together": [*between, both],
+        "vacuum-then-lift": [stages[box], *between, stages[lift] | damping],
+    }
+    return [Point(name, {"process.stages": [*stages[:first], *order, *after]}) for name, order in orders.items()]
+
+
+def layup(case: Case) -> list[Point]:
+    """Orientation and number of plies: 0/90, +-45, and both in either order (bottom ply first)."""
+    stacks = ((0.0,), (45.0,), (45.0, 0.0), (0.0, 45.0))
+    return [
+        Point("-".join(f"{angle:g}" for angle in stack), {"plies": _layup(case.plies[0], stack)}) for stack in stacks
+    ]
+
+
+def tool(case: Case) -> list[Point]:
+    """The tool's rounding, and for the published tetrahedron, of which only the height is known, its shape."""
+    if case.tool is None or "fillet_mm" not in case.tool.used_keys() or case.tool.shape == "hemisphere":
+        raise UsageError("the sweep 'tool' needs a tool with fillets", "choose another case with --case")
+    if case.tool.shape in TETRAHEDRA:
+        chosen = [(TETRAHEDRA[0], fillet) for fillet in FILLETS_MM] + [(TETRAHEDRA[1], FILLETS_MM[1])]
+    else:
+        chosen = [(case.tool.shape, factor * case.tool.fillet_mm) for factor in (0.5, 1.0, 2.0)]
+    return [
+        Point(f"{shape}-fillet-{fillet:g}", {"tool.shape": shape, "tool.fillet_mm": fillet}) for shape, fillet in chosen
+    ]
+
+
+def mesh(case: Case) -> list[Point]:
+    """Element size of plies and diaphragms, 2 to 0.75 times the case's."""
+    points = []
+    for factor in MESH_FACTORS:
+        changes = {f"plies.{k}.element_mm": factor * ply.element_mm for k, ply in enumerate(case.plies)}
+        d = case.diaphragms
+        changes |= {
+            "diaphragms.element_mm": factor * d.element_mm,
+            "diaphragms.element_max_mm": factor * d.element_max_mm,
+        }
+        points.append(Point(f"element-{factor * case.plies[0].element_mm:g}-mm", changes))
+    return points
+
+
+def _layup(ply: Ply, angles: tuple[float, ...]) -> list[dict[str, Any]]:
+    """Plies like the given one, bottom first, at other angles."""
+    table = ply.model_dump(exclude_none=True)
+    return [table | {"name": f"ply-{number}", "orientation_deg": angle} for number, angle in enumerate(angles, start=1)]
+
+
+NAMED: dict[str, Callable[[Case], list[Point]]] = {
+    "friction": friction, "loading": loading, "layup": layup, "tool": tool, "mesh": mesh,
+}  # fmt: skip

@@ -1,0 +1,54 @@
+"""One table of a sweep: a row a case and ply."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from ddf.output.results import open_run
+from ddf.sweep.manifest import FINISHED, Entry, Outcome, SweepFolder
+from ddf.sweep.plan import Point, scalar_keys
+
+METRICS = (
+    "wrinkle_count", "wrinkle_total_length_mm", "wrinkle_largest_amplitude_mm", "wrinkled_area_percent",
+    "shear_mean_deg", "shear_p95_deg", "shear_max_deg", "bridging_largest_mm", "bridged_area_percent",
+    "locked_area_percent", "outline_area_mm2",
+)  # fmt: skip
+DRAW_IN = ("draw_in_mid_side_mean_mm", "draw_in_corner_mean_mm")
+
+
+def swept_keys(entries: list[Entry]) -> list[str]:
+    """Keys with numbers or text that are not the same in all cases."""
+    keys = scalar_keys([Point(entry.name, entry.changes) for entry in entries])
+    return [key for key in keys if len({str(entry.changes.get(key)) for entry in entries}) > 1]
+
+
+def sweep_rows(folder: SweepFolder, entries: list[Entry], outcomes: dict[str, Outcome]) -> list[dict[str, Any]]:
+    """Rows: case, state, reason, wall time, swept keys, ply, metrics; None where something is not known."""
+    rows = []
+    for entry in entries:
+        outcome = outcomes[entry.name]
+        head = {"case": entry.name, "state": outcome.state, "reason": outcome.reason.replace("\n", " "),
+                "wall_s": round(outcome.wall_s, 1)}  # fmt: skip
+        head |= {key: entry.changes.get(key) for key in swept_keys(entries)}
+        tables = open_run(folder.run_folder(entry.name)).metrics["plies"] if outcome.state == FINISHED else [{}]
+        for ply in tables:
+            row = head | {"ply": ply.get("ply")} | {key: ply.get(key) for key in METRICS}
+            for key in DRAW_IN:
+                values = ply.get(key.replace("_mean", "")) or {}
+                row[key] = float(np.mean(list(values.values()))) if values else None
+            rows.append(row)
+    return rows
+
+
+def write_rows(folder: SweepFolder, rows: list[dict[str, Any]]) -> None:
+    """Write table.csv."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
+    folder.out.write_text("table.csv", text.getvalue())
