@@ -15,6 +15,7 @@ from ddf.case.tool import REQUIRED_KEYS
 from ddf.case.words import KeyPath
 
 FRAME_MARGIN_MM = 20.0
+MAX_CUT_POINTS = 10_000  # of all holes and slits of a ply: each is checked against the outline and the other holes
 
 
 def ply_problems(ply: Ply, path: KeyPath, frame: Frame | None) -> Iterator[Problem]:
@@ -61,6 +62,11 @@ def _polygon(points: tuple[tuple[float, float], ...], path: KeyPath) -> Iterator
 
 def _cuts(ply: Ply, path: KeyPath) -> Iterator[Problem]:
     """Check that holes are simple, inside the outline and apart, and that slits stay inside it."""
+    for key, cuts in (("holes_mm", ply.holes_mm), ("slits_mm", ply.slits_mm)):
+        count = sum(len(cut) for cut in cuts)
+        if count > MAX_CUT_POINTS:
+            yield Problem((*path, key), f"has {count} points in all", f"<= {MAX_CUT_POINTS} points")
+            return
     dx, dy = ply.offset_mm
     outline = tuple((x - dx, y - dy) for x, y in ply.outline_mm())
     sound: list[int] = []
@@ -71,11 +77,12 @@ def _cuts(ply: Ply, path: KeyPath) -> Iterator[Problem]:
         if broken:
             continue
         crosses = lines_meet(hole, outline, closed=(True, True), touching=True)
-        if crosses or not inside(hole, outline).all():
+        if crosses or not inside(hole[:1], outline).all():
             yield Problem(hole_path, "the hole is not inside the outline", "clear of the outline")
         for other in sound:
             if _overlap(hole, ply.holes_mm[other]):
                 yield Problem(hole_path, f"meets or overlaps holes_mm.{other}", "holes apart from each other")
+                break
         sound.append(place)
     for place, slit in enumerate(ply.slits_mm):
         leaves = lines_meet(slit, outline, closed=(False, True), touching=False)
