@@ -5,6 +5,7 @@ Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
 from typing import Any, NoReturn
@@ -28,6 +29,8 @@ class _Commands(click.Group):
             _fail(str(error), error.exit_code)
         except MemoryError:
             _fail("out of memory; larger elements or fewer frames need less", 1)
+        except KeyboardInterrupt:
+            _fail("interrupted", INTERRUPTED)
 
 
 def _fail(message: str, code: int) -> NoReturn:
@@ -73,37 +76,46 @@ def run(
 
     Example: ddf run cases/tetrahedron-0-90-coarse.toml -o runs/first
     """
-    from ddf.case import load_case
+    from ddf.case.load import load_source
     from ddf.run import run_case
 
-    loaded = load_case(case, overrides)
+    if resume and force:
+        raise click.UsageError("--resume goes on with a run, --force replaces it: choose one")
+    loaded, source = load_source(case, overrides)
     folder = output if output is not None else Path("runs") / case.stem
-    text = None if overrides else case.read_text(encoding="utf-8")
+    settings = [part for item in overrides for part in ("--set", item)]
+    again = shlex.join(["ddf", "run", str(case), "-o", str(folder), "--resume", *settings])
     if not quiet:
         click.echo("meshing, then compiling the kernels (about a minute the first time) ...", err=True)
-    result = run_case(
-        loaded, folder, case_text=text, threads=threads, resume=resume, force=force,
-        report=None if quiet else _progress,
-    )  # fmt: skip
+    try:
+        result = run_case(
+            loaded, folder, case_text=None if overrides else source.text, threads=threads, resume=resume, force=force,
+            report=None if quiet else _progress, source=source, warn=lambda text: click.echo(text, err=True),
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        _fail(f"interrupted{_resumable(folder, again)}", INTERRUPTED)
+    except DdfError as error:
+        retry = _resumable(folder, again) if error.exit_code == 1 else ""
+        _fail(f"{error}{retry}", error.exit_code)
     if not quiet and sys.stderr.isatty():
         click.echo("", err=True)
     if result.stop_reason == "interrupted":
-        again = f"ddf run {case} -o {folder} --resume" + "".join(f" --set {item}" for item in overrides)
         click.echo(f"interrupted at {result.time_s:.5f} s; go on with: {again}", err=True)
         sys.exit(INTERRUPTED)
     _summary(result)
 
 
+def _resumable(folder: Path, again: str) -> str:
+    """What to do about a run that was stopped, if it has a checkpoint."""
+    there = (folder / "checkpoint.npz").is_file()
+    return f"\n  the last checkpoint stands; go on with: {again}" if there else ""
+
+
 def _progress(p: Any) -> None:
-    line = (
-        f"{p.stage:>16}  {p.time_s:8.5f} s  step {p.step}/{p.steps}  dt {p.step_s:.2e} s  "
-        f"energy error {p.energy_error_percent:+.2f} %  kinetic/internal {p.kinetic_percent:.2g} %  "
-        f"elapsed {p.elapsed_s:.0f} s  left {p.remaining_s:.0f} s"
-    )
     if sys.stderr.isatty():
-        click.echo("\r" + line.ljust(140), nl=False, err=True)
+        click.echo("\r" + str(p).ljust(140), nl=False, err=True)
     else:
-        click.echo(line, err=True)
+        click.echo(str(p), err=True)
 
 
 def _summary(result: Any) -> None:
@@ -132,11 +144,12 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
 
     Example: ddf check cases/tetrahedron-0-90.toml
     """
-    from ddf.build import build_scene
-    from ddf.case import load_case
+    from ddf.case.load import load_source
     from ddf.describe import describe_scene
+    from ddf.plausible import prepare
 
-    click.echo(describe_scene(build_scene(load_case(case, overrides))))
+    loaded, source = load_source(case, overrides)
+    click.echo(describe_scene(prepare(loaded, source, lambda text: click.echo(text, err=True))))
 
 
 @main.command()

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ddf.case.faults import Problem
 from ddf.case.geometry import coinciding_corners, crossing_edges, inside, lines_meet
 from ddf.case.plies import Ply
-from ddf.case.schema import Frame, Tool
+from ddf.case.schema import Diaphragms, Frame, Tool
 from ddf.case.tool import REQUIRED_KEYS
 from ddf.case.words import KeyPath
 
@@ -129,3 +129,28 @@ def _box_corners(tool: Tool) -> np.ndarray:
     turning = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     turned: np.ndarray = np.array([[a, b], [a, -b]]) @ turning
     return turned
+
+
+def mesh_problems(
+    diaphragms: Diaphragms, frame: Frame | None, plies: Sequence[Ply | None], tool: Tool | None
+) -> Iterator[Problem]:
+    """Check that elements are small against frame, plies and tool: a mesh that cannot show their shape is none."""
+    path = ("diaphragms", "element_mm")
+    size = diaphragms.element_mm
+    if diaphragms.element_max_mm < size:
+        yield Problem(("diaphragms", "element_max_mm"), "is smaller than element_mm", f">= {size:g}")
+    sides = [("frame", 0.25 * min(frame.length_mm, frame.width_mm))] if frame is not None else []
+    for ply in plies:
+        if ply is not None and (ply.size_mm is None) != (ply.polygon_mm is None):
+            sides.append(("smallest ply", 0.5 * float(np.ptp(np.asarray(ply.outline_mm()), axis=0).min())))
+    radius = tool.footprint_radius_mm() if tool is not None else None
+    if radius is not None:
+        sides.append(("tool", radius))
+        for place, ply in enumerate(plies):
+            if ply is not None and ply.element_mm > radius:
+                problem = f"{ply.element_mm:g} is too large for a tool {2 * radius:.4g} mm across"
+                yield Problem(("plies", place, "element_mm"), problem, f"<= {radius:.4g}")
+    if sides:
+        what, largest = min(sides, key=lambda side: side[1])
+        if size > largest:
+            yield Problem(path, f"{size:g} is too large for the {what}", f"<= {largest:.4g}")
