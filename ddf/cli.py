@@ -6,6 +6,7 @@ Exit codes: 0 ok; 1 failure; 2 usage or an invalid case; 3 unstable or an energy
 from __future__ import annotations
 
 import shlex
+import signal
 import sys
 from pathlib import Path
 from typing import Any, NoReturn
@@ -76,6 +77,7 @@ def run(
 
     Example: ddf run cases/tetrahedron-0-90-coarse.toml -o runs/first
     """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from ddf.case.load import load_source
     from ddf.run import run_case
 

@@ -21,6 +21,7 @@ import numpy as np
 from ddf.case import Case, resolved_toml
 from ddf.case.load import Source
 from ddf.errors import UnstableError
+from ddf.kernel_cache import warm_kernels
 from ddf.monitors.audit import Check
 from ddf.monitors.energy import Energies, energies
 from ddf.monitors.stability import check_state
@@ -137,6 +138,7 @@ def run_case(
     report: Callable[[Progress], None] | None = None,
     source: Source | None = None,
     warn: Callable[[str], None] | None = None,
+    compiled: bool = False,
 ) -> RunResult:
     """Run a case into a folder and return how it ended.
 
@@ -144,11 +146,15 @@ def run_case(
     stops the run (all output so far and the last good checkpoint are kept). On SIGINT or SIGTERM a checkpoint is
     written and stop_reason is "interrupted"; before the first step and after the last one, and on a second
     signal, KeyboardInterrupt is raised at once. `resume=True` goes on, bit for bit as if nothing had happened.
-    Warnings about the case go to `warn`; its problems are placed by `source`.
+    Warnings about the case go to `warn`; its problems are placed by `source`. `compiled` says that kernels need not
+    be compiled beforehand.
     """
     watch, warnings = _Stopwatch(), list[str]()
     with _Interrupt() as interrupt:
         RunFolder(folder).refuse(force=force, resume=resume)
+        if not compiled:
+            with watch("compile"):
+                warm_kernels()
         with watch("mesh"):
             scene = prepare(case, source, warnings.append, _existing(Path(folder)))
         for text in warnings:

@@ -25,7 +25,7 @@ def ply_problems(ply: Ply, path: KeyPath, frame: Frame | None) -> Iterator[Probl
     if frame is not None:
         yield from _in_frame(outline, ply, path, outline_path, frame)
     short = float(np.ptp(outline, axis=0).min())
-    if ply.element_mm > 0.5 * short:
+    if ply.element_mm > 0.5 * short > 0.0:
         problem = f"{ply.element_mm:g} is too large for a ply {short:g} mm across"
         yield Problem((*path, "element_mm"), problem, f"<= {0.5 * short:g}")
     broken = list(_polygon(ply.polygon_mm, outline_path)) if ply.polygon_mm is not None else []
@@ -152,5 +152,5 @@ def mesh_problems(
                 yield Problem(("plies", place, "element_mm"), problem, f"<= {radius:.4g}")
     if sides:
         what, largest = min(sides, key=lambda side: side[1])
-        if size > largest:
+        if size > largest > 0.0:
             yield Problem(path, f"{size:g} is too large for the {what}", f"<= {largest:.4g}")
