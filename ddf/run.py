@@ -97,7 +97,10 @@ class _Stopwatch:
 
 
 class _Interrupt:
-    """SIGINT and SIGTERM: while `noting`, the first is only noted; else, and from the second on, KeyboardInterrupt."""
+    """SIGINT and SIGTERM: while `noting`, the first is only noted; else, and from the second on, KeyboardInterrupt.
+
+    Compilers and meshers do not survive an exception out of nowhere: while they work signals are noted.
+    """
 
     def __init__(self) -> None:
         self.noting = False
@@ -144,8 +147,8 @@ def run_case(
 
     Raises CaseError, MeshError, UsageError before anything in the folder is changed, UnstableError when a guard
     stops the run (all output so far and the last good checkpoint are kept). On SIGINT or SIGTERM a checkpoint is
-    written and stop_reason is "interrupted"; before the first step and after the last one, and on a second
-    signal, KeyboardInterrupt is raised at once. `resume=True` goes on, bit for bit as if nothing had happened.
+    written and stop_reason is "interrupted"; before the first step, and on a second signal, KeyboardInterrupt is
+    raised. `resume=True` goes on, bit for bit as if nothing had happened.
     Warnings about the case go to `warn`; its problems are placed by `source`. `compiled` says that kernels need not
     be compiled beforehand.
     """
@@ -155,8 +158,11 @@ def run_case(
         if not compiled:
             with watch("compile"):
                 warm_kernels()
+        interrupt.noting = True
         with watch("mesh"):
             scene = prepare(case, source, warnings.append, _existing(Path(folder)))
+        if interrupt.caught:
+            raise KeyboardInterrupt
         for text in warnings:
             if warn is not None:
                 warn(text)
@@ -257,7 +263,6 @@ class _Runner:
         if self.sim.step == 0:
             self._checkpoint(0.0)
         began = last_checkpoint = clock.perf_counter()
-        interrupt.noting = True
         while self.sim.step < steps:
             with self.watch("steps"):
                 self.sim.advance(min(interval - self.sim.step % interval, steps - self.sim.step))
@@ -278,7 +283,6 @@ class _Runner:
                 last_checkpoint = now
             if interrupt.caught and self.sim.step < steps:
                 return "interrupted"
-        interrupt.noting = False
         return "finished"
 
     def _compile(self) -> None:

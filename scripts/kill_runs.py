@@ -109,8 +109,10 @@ def killed_run(folder: Path, kills: int, lasts_s: float, chance: random.Random) 
         _, message = process.communicate(timeout=TIMEOUT_S)
         code, text = process.returncode, message.decode(errors="replace")
         found += torn_files(folder)
-        allowed = (0, -signal.SIGKILL) if number == signal.SIGKILL else (0, 130, -number)  # -number: still starting
-        if code not in allowed or "Traceback" in text:
+        # Python itself ends by SIGINT, 130 to a shell, where that broke off an import
+        allowed = (0, -signal.SIGKILL) if number == signal.SIGKILL else (0, 130, -signal.SIGINT)
+        starting = code == -signal.SIGTERM and not text
+        if (code not in allowed and not starting) or "Traceback" in text:
             found.append(f"signal {number.name}: exit code {code}: {text[-2000:]}")
         if code == 130 and (folder / "checkpoint.npz").exists() and "--resume" not in text:
             found.append(f"signal {number.name}: does not say how to go on: {text}")
