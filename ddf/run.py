@@ -160,7 +160,7 @@ def run_case(
                 warm_kernels()
         interrupt.noting = True
         with watch("mesh"):
-            scene = prepare(case, source, warnings.append, _existing(Path(folder)))
+            scene = prepare(case, source, warnings.append, None if resume else _existing(Path(folder)))
         if interrupt.caught:
             raise KeyboardInterrupt
         for text in warnings:
