@@ -8,6 +8,7 @@ from __future__ import annotations
 import shlex
 import signal
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -92,7 +93,7 @@ def run(
     try:
         result = run_case(
             loaded, folder, case_text=None if overrides else source.text, threads=threads, resume=resume, force=force,
-            report=None if quiet else _progress, source=source, warn=lambda text: click.echo(text, err=True),
+            report=None if quiet else _progress, source=source, warn=_say,
         )  # fmt: skip
     except KeyboardInterrupt:
         _fail(f"interrupted{_resumable(folder, again)}", INTERRUPTED)
@@ -115,9 +116,15 @@ def _resumable(folder: Path, again: str) -> str:
 
 def _progress(p: Any) -> None:
     if sys.stderr.isatty():
-        click.echo("\r" + str(p).ljust(140), nl=False, err=True)
+        _say("\r" + str(p).ljust(140), nl=False)
     else:
-        click.echo(str(p), err=True)
+        _say(str(p))
+
+
+def _say(text: str, nl: bool = True) -> None:
+    """Write to stderr; a run does not end because nobody listens any more (it is in log.txt too)."""
+    with suppress(BrokenPipeError):
+        click.echo(text, err=True, nl=nl)
 
 
 def _summary(result: Any) -> None:
@@ -151,7 +158,7 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
     from ddf.plausible import prepare
 
     loaded, source = load_source(case, overrides)
-    click.echo(describe_scene(prepare(loaded, source, lambda text: click.echo(text, err=True))))
+    click.echo(describe_scene(prepare(loaded, source, _say)))
 
 
 @main.command()

@@ -64,7 +64,8 @@ def use_cache() -> Path:
     given = os.environ.get("DDF_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     base = Path(given) if given else Path(home) / "ddf"
-    folder = base / source_digest(Path(__file__).parent)
+    digest = source_digest(Path(__file__).parent)
+    folder = base if base.name == digest else base / digest  # handed on by a process that has set it
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if not os.access(folder, os.W_OK):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from ddf.errors import DdfError
 from ddf.output.atomic import write_errors
@@ -49,4 +49,5 @@ def run_log(folder: RunFolder) -> Iterator[logging.Logger]:
         for logger, level in zip(loggers, levels, strict=True):
             logger.removeHandler(handler)
             logger.setLevel(level)
-        handler.close()
+        with suppress(OSError):
+            handler.close()
