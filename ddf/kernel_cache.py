@@ -16,13 +16,11 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.metadata import version
 from pathlib import Path
 
 IMPORT = re.compile(r"^from (ddf[\w.]*) import (\([^)]*\)|[\w, ]+)", re.MULTILINE)
@@ -82,6 +80,9 @@ def warm_kernels() -> None:
 
     Where that process fails, a warning says so, and kernels are compiled where they are used.
     """
+    import subprocess
+    from importlib.metadata import version
+
     package = Path(__file__).resolve().parent
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
     mark = f"{package} {sys.version} numba {version('numba')} llvmlite {version('llvmlite')}"
