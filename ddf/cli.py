@@ -6,7 +6,10 @@ its bound; 5 some cases of a sweep failed; 130 interrupted.
 
 from __future__ import annotations
 
+import shlex
+import signal
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -31,6 +34,8 @@ class _Commands(click.Group):
             _fail(str(error), error.exit_code)
         except MemoryError:
             _fail("out of memory; larger elements or fewer frames need less", 1)
+        except KeyboardInterrupt:
+            _fail("interrupted", INTERRUPTED)
 
 
 def _fail(message: str, code: int) -> NoReturn:
@@ -77,37 +82,53 @@ def run(
 
     Example: ddf run cases/tetrahedron-0-90-coarse.toml -o runs/first
     """
-    from ddf.case import load_case
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    from ddf.case.load import load_source
     from ddf.run import run_case
 
-    loaded = load_case(case, overrides)
+    if resume and force:
+        raise click.UsageError("--resume goes on with a run, --force replaces it: choose one")
+    loaded, source = load_source(case, overrides)
     folder = output if output is not None else Path("runs") / case.stem
-    text = None if overrides else case.read_text(encoding="utf-8")
+    settings = [part for item in overrides for part in ("--set", item)]
+    again = shlex.join(["ddf", "run", str(case), "-o", str(folder), "--resume", *settings])
     if not quiet and loaded.model == "forming":
         click.echo("meshing, then compiling the kernels (about a minute the first time) ...", err=True)
-    result = run_case(
-        loaded, folder, case_text=text, threads=threads, resume=resume, force=force,
-        report=None if quiet else _progress,
-    )  # fmt: skip
+    try:
+        result = run_case(
+            loaded, folder, case_text=None if overrides else source.text, threads=threads, resume=resume, force=force,
+            report=None if quiet else _progress, source=source, warn=_say,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        _fail(f"interrupted{_resumable(folder, again)}", INTERRUPTED)
+    except DdfError as error:
+        retry = _resumable(folder, again) if error.exit_code == 1 else ""
+        _fail(f"{error}{retry}", error.exit_code)
     if not quiet and sys.stderr.isatty():
         click.echo("", err=True)
     if result.stop_reason == "interrupted":
-        again = f"ddf run {case} -o {folder} --resume" + "".join(f" --set {item}" for item in overrides)
         click.echo(f"interrupted at {result.time_s:.5f} s; go on with: {again}", err=True)
         sys.exit(INTERRUPTED)
     _summary(result)
 
 
+def _resumable(folder: Path, again: str) -> str:
+    """What to do about a run that was stopped, if it has a checkpoint."""
+    there = (folder / "checkpoint.npz").is_file()
+    return f"\n  the last checkpoint stands; go on with: {again}" if there else ""
+
+
 def _progress(p: Any) -> None:
-    line = (
-        f"{p.stage:>16}  {p.time_s:8.5f} s  step {p.step}/{p.steps}  dt {p.step_s:.2e} s  "
-        f"energy error {p.energy_error_percent:+.2f} %  kinetic/internal {p.kinetic_percent:.2g} %  "
-        f"elapsed {p.elapsed_s:.0f} s  left {p.remaining_s:.0f} s"
-    )
     if sys.stderr.isatty():
-        click.echo("\r" + line.ljust(140), nl=False, err=True)
+        _say("\r" + str(p).ljust(140), nl=False)
     else:
-        click.echo(line, err=True)
+        _say(str(p))
+
+
+def _say(text: str, nl: bool = True) -> None:
+    """Write to stderr; a run does not end because nobody listens any more (it is in log.txt too)."""
+    with suppress(BrokenPipeError):
+        click.echo(text, err=True, nl=nl)
 
 
 def _summary(result: Any) -> None:
@@ -148,13 +169,16 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
 
     Example: ddf check cases/tetrahedron-0-90.toml
     """
-    from ddf.build import build_scene
-    from ddf.case import load_case
+    from ddf.case.load import load_source
     from ddf.describe import describe_scene
     from ddf.net_run import describe_net
+    from ddf.plausible import prepare
 
-    loaded = load_case(case, overrides)
-    click.echo(describe_net(loaded) if loaded.model == "kinematic" else describe_scene(build_scene(loaded)))
+    loaded, source = load_source(case, overrides)
+    if loaded.model == "kinematic":
+        click.echo(describe_net(loaded))
+    else:
+        click.echo(describe_scene(prepare(loaded, source, _say)))
 
 
 @main.command()

@@ -43,11 +43,15 @@ class CaseError(DdfError):
     """An invalid case or sweep file; carries all its faults at once."""
 
     exit_code = 2
+    shown = 100  # faults in the message; `faults` has them all
 
     def __init__(self, faults: list[Fault], what: str = "case") -> None:
         self.faults = faults
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        super().__init__(f"{count} in the {what}\n" + "\n".join(f"  {fault}" for fault in faults))
+        lines = [f"{count} in the {what}", *(f"  {fault}" for fault in faults[: self.shown])]
+        if len(faults) > self.shown:
+            lines.append(f"  ... and {len(faults) - self.shown} more")
+        super().__init__("\n".join(lines))
 
 
 class UsageError(DdfError):

@@ -4,6 +4,11 @@ numba notices that a kernel's own file has changed, but not that a function it c
 the cache folder carries a digest of every source that holds kernels and of all that these import from the
 package: a changed kernel never meets old machine code, and a changed report recompiles nothing. The folder is
 below DDF_CACHE_DIR, else NUMBA_CACHE_DIR, else the user's cache folder, else (not writable) a temporary one.
+
+A process that compiles kernels and one that loads them do not compute the same last digits: the first calls the
+copies of shared functions that it compiled one by one, the second those that were optimised within each kernel.
+So that a run that is resumed is the same to the last bit, all kernels are compiled in a process of their own, and
+every run loads them.
 """
 
 from __future__ import annotations
@@ -11,10 +16,14 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import sys
 import tempfile
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-IMPORT = re.compile(r"^from (ddf[\w.]*) import ([\w, ]+)", re.MULTILINE)
+IMPORT = re.compile(r"^from (ddf[\w.]*) import (\([^)]*\)|[\w, ]+)", re.MULTILINE)
 
 
 def kernel_sources(package: Path) -> list[Path]:
@@ -33,7 +42,7 @@ def kernel_sources(package: Path) -> list[Path]:
             places = [
                 below.with_suffix(".py"),
                 below / "__init__.py",
-                *(below / f"{n.strip()}.py" for n in names.split(",")),
+                *(below / f"{n.strip()}.py" for n in names.strip("()").split(",")),
             ]
             todo.extend(place for place in places if place.is_file())
     return sorted(found)
@@ -53,12 +62,59 @@ def use_cache() -> Path:
     given = os.environ.get("DDF_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     base = Path(given) if given else Path(home) / "ddf"
-    folder = base / source_digest(Path(__file__).parent)
+    digest = source_digest(Path(__file__).parent)
+    folder = base if base.name == digest else base / digest  # handed on by a process that has set it
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if not os.access(folder, os.W_OK):
             raise PermissionError(folder)
     except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="ddf-cache-"))
+        folder = Path(tempfile.mkdtemp(prefix="ddf-cache-")) / folder.name
+        folder.mkdir()
     os.environ["NUMBA_CACHE_DIR"] = str(folder)
     return folder
+
+
+def warm_kernels() -> None:
+    """Compile all kernels in a process of their own, unless that was done; others that need them wait.
+
+    Where that process fails, a warning says so, and kernels are compiled where they are used.
+    """
+    import subprocess
+    from importlib.metadata import version
+
+    package = Path(__file__).resolve().parent
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    mark = f"{package} {sys.version} numba {version('numba')} llvmlite {version('llvmlite')}"
+    marker = folder / f"compiled-{hashlib.sha256(mark.encode()).hexdigest()[:16]}"
+    if marker.exists():
+        return
+    path = os.pathsep.join(filter(None, [str(package.parent), os.environ.get("PYTHONPATH")]))
+    environment = os.environ | {"DDF_CACHE_DIR": str(folder.parent), "PYTHONPATH": path}
+    with _one_at_a_time(folder):
+        if marker.exists():
+            return
+        command = [sys.executable, "-m", "ddf.compile_kernels"]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            marker.touch()
+            return
+    last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+    warnings.warn(
+        f"kernels could not be compiled in a process of their own ({last}); if this run is resumed, it may differ in "
+        "the last digits",
+        stacklevel=2,
+    )
+
+
+@contextmanager
+def _one_at_a_time(folder: Path) -> Iterator[None]:
+    """Wait until no other process holds the folder's lock, and hold it; no lock where the system has none."""
+    try:
+        import fcntl
+
+        with open(folder / "lock", "w") as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX)
+            yield
+    except ImportError:
+        yield

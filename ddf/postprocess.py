@@ -88,7 +88,8 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
     key_numbers = {
         "process time": f"{info['process_time_s']:.4g} s",
         "steps": f"{info['step']} of {info['step_s']:.3g} s",
-        "wall time of the steps": f"{info['wall_s'].get('steps', 0.0):.0f} s on {info['threads']} threads",
+        "wall time of the steps": f"{info['wall_s'].get('steps', 0.0):.0f} s on "
+        + ("1 thread" if info["threads"] == 1 else f"{info['threads']} threads"),
         "added mass": ", ".join(
             f"{name} {sheet['added_mass_g']:.0f} g" for name, sheet in info["mesh"]["sheets"].items()
             if sheet["added_mass_g"] > 0

@@ -12,23 +12,28 @@ import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from logging import Logger
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ddf.build import build_scene
 from ddf.case import Case, resolved_toml
+from ddf.case.load import Source
 from ddf.errors import UnstableError
+from ddf.kernel_cache import warm_kernels
 from ddf.monitors.audit import Check
 from ddf.monitors.energy import Energies, energies
 from ddf.monitors.stability import check_state
 from ddf.net_run import run_net
-from ddf.output.checkpoint import load_checkpoint, save_checkpoint
+from ddf.output.checkpoint import CHECKPOINT, load_checkpoint, save_checkpoint
 from ddf.output.folder import RunFolder
+from ddf.output.lock import folder_lock
+from ddf.output.log import run_log
 from ddf.output.snapshot import take_snapshot
 from ddf.output.tables import HistoryWriter
 from ddf.output.vtu import FrameWriter
+from ddf.plausible import prepare
 from ddf.postprocess import finish_folder, report_of
 from ddf.provenance import provenance
 from ddf.scene import Scene
@@ -54,6 +59,13 @@ class Progress:
     kinetic_percent: float
     elapsed_s: float
     remaining_s: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.stage:>16}  {self.time_s:8.5f} s  step {self.step}/{self.steps}  dt {self.step_s:.2e} s  "
+            f"energy error {self.energy_error_percent:+.2f} %  kinetic/internal {self.kinetic_percent:.2g} %  "
+            f"elapsed {self.elapsed_s:.0f} s  left {self.remaining_s:.0f} s"
+        )
 
 
 @dataclass
@@ -86,9 +98,13 @@ class _Stopwatch:
 
 
 class _Interrupt:
-    """Notes SIGINT and SIGTERM instead of dying from them; the run stops after the batch."""
+    """SIGINT and SIGTERM: while `noting`, the first is only noted; else, and from the second on, KeyboardInterrupt.
+
+    Compilers and meshers do not survive an exception out of nowhere: while they work signals are noted.
+    """
 
     def __init__(self) -> None:
+        self.noting = False
         self.caught = False
         self._old: dict[int, Any] = {}
 
@@ -105,6 +121,8 @@ class _Interrupt:
             signal.signal(number, handler)
 
     def _note(self, *_: object) -> None:
+        if self.caught or not self.noting:
+            raise KeyboardInterrupt
         self.caught = True
 
 
@@ -122,31 +140,68 @@ def run_case(
     resume: bool = False,
     force: bool = False,
     report: Callable[[Progress], None] | None = None,
+    source: Source | None = None,
+    warn: Callable[[str], None] | None = None,
+    compiled: bool = False,
 ) -> RunResult:
     """Run a case into a folder and return how it ended.
 
-    Raises CaseError, MeshError, UsageError before the run, UnstableError when a guard stops it (all output so
-    far and the last good checkpoint are kept). On SIGINT or SIGTERM a checkpoint is written and
-    stop_reason is "interrupted"; `resume=True` goes on, bit for bit as if nothing had happened.
-    A case of the model "kinematic" is draped as a net instead (`net_run`), in one go.
+    Raises CaseError, MeshError, UsageError before anything in the folder is changed, UnstableError when a guard
+    stops the run (all output so far and the last good checkpoint are kept). On SIGINT or SIGTERM a checkpoint is
+    written and stop_reason is "interrupted"; before the first step, and on a second signal, KeyboardInterrupt is
+    raised. `resume=True` goes on, bit for bit as if nothing had happened.
+    Warnings about the case go to `warn`; its problems are placed by `source`. `compiled` says that kernels need not
+    be compiled beforehand. A case of the model "kinematic" is draped as a net instead (`net_run`), in one go.
     """
     if case.model == "kinematic":
         net = run_net(case, folder, case_text=case_text, replace=force or resume)
         return RunResult(Path(folder), "finished", 0, 0.0, net.wall_s, plies=net.plies, notes=net.notes)
-    watch = _Stopwatch()
-    out = RunFolder.create(folder, force=force, resume=resume)
-    with watch("mesh"):
-        scene = build_scene(case)
-    text = case_text if case_text is not None else resolved_toml(case)
-    out.write_text("case.toml", text)
-    out.write_text("case.resolved.toml", resolved_toml(case))
-    count = threads or case.solver.threads or default_threads()
-    runner = _Runner(scene, out, count, watch, report)
-    if resume:
-        runner.resume()
+    watch, warnings = _Stopwatch(), list[str]()
+    with _Interrupt() as interrupt:
+        RunFolder(folder).refuse(force=force, resume=resume)
+        if not compiled:
+            with watch("compile"):
+                warm_kernels()
+        interrupt.noting = True
+        with watch("mesh"):
+            scene = prepare(case, source, warnings.append, None if resume else _existing(Path(folder)))
+        if interrupt.caught:
+            raise KeyboardInterrupt
+        for text in warnings:
+            if warn is not None:
+                warn(text)
+        out = RunFolder.create(folder, force=True, resume=True)
+        with folder_lock(out.path):
+            again = resume and (out / CHECKPOINT).exists()
+            if force or (resume and out.started and not again):  # stopped before its first checkpoint: start anew
+                out.empty()
+            elif resume and not again:
+                load_checkpoint(out, scene)  # says that there is nothing to resume
+            with run_log(out) as log:
+                count = threads or case.solver.threads or default_threads()
+                log.info("%s: %s on %d threads", "resumed" if again else "started", case.title or "no title", count)
+                for text in warnings:
+                    log.warning("%s", text.removeprefix("warning: "))
+                runner = _Runner(scene, out, count, watch, report, log)
+                text = case_text if case_text is not None else resolved_toml(case)
+                return _run(runner, text, again, interrupt)
+
+
+def _existing(path: Path) -> Path:
+    """The nearest folder that is there."""
+    path = path.absolute()
+    return next(place for place in (path, *path.parents) if place.is_dir())
+
+
+def _run(runner: _Runner, case_text: str, again: bool, interrupt: _Interrupt) -> RunResult:
+    """Run from the start or the checkpoint to the end, a signal or a guard."""
+    scene, out, watch = runner.scene, runner.out, runner.watch
     try:
-        with _Interrupt() as interrupt:
-            reason = runner.loop(interrupt)
+        if again:
+            runner.resume()
+        out.write_text("case.resolved.toml", resolved_toml(scene.case))
+        out.write_text("case.toml", case_text)
+        reason = runner.loop(interrupt)
     except UnstableError as error:
         runner.write_info("unstable", str(error))
         raise
@@ -159,6 +214,7 @@ def run_case(
     runner.write_info(reason, "", result.checks)
     if reason == "finished":
         report_of(scene, out, result.notes)
+    runner.sum_up(result)
     return result
 
 
@@ -172,8 +228,10 @@ class _Runner:
         threads: int,
         watch: _Stopwatch,
         report: Callable[[Progress], None] | None,
+        log: Logger,
     ) -> None:
         self.scene, self.out, self.threads, self.watch, self.report = scene, out, threads, watch, report
+        self.log = log
         self.start_x = scene.state.x.copy()
         self.sim = Simulation(scene, threads)
         self.names = [sheet.name for sheet in scene.sheets]
@@ -187,6 +245,7 @@ class _Runner:
     def resume(self) -> None:
         """Go back to the folder's checkpoint."""
         extra = load_checkpoint(self.out, self.scene)
+        self.out.sweep()
         self.frames_done = int(extra["frames_done"])
         self.earlier_wall = float(extra["wall_s"])
         self.sim.recount()
@@ -198,14 +257,16 @@ class _Runner:
     def loop(self, interrupt: _Interrupt) -> str:
         """Advance to the end of the process; returns the reason for stopping."""
         steps, interval = self.scene.steps, self.scene.case.solver.check_interval_steps
-        began = last_checkpoint = last_report = clock.perf_counter()
+        began = last_report = clock.perf_counter()
         first_step = self.sim.step
         if self.history is None:
             self.history = HistoryWriter(self.out, self.names)
             self._observe(began)
         with self.watch("compile"):
             self._compile()
-        began = clock.perf_counter()
+        if self.sim.step == 0:
+            self._checkpoint(0.0)
+        began = last_checkpoint = clock.perf_counter()
         while self.sim.step < steps:
             with self.watch("steps"):
                 self.sim.advance(min(interval - self.sim.step % interval, steps - self.sim.step))
@@ -213,9 +274,12 @@ class _Runner:
             with self.watch("output"):
                 self._observe(began)
             now = clock.perf_counter()
-            if self.report is not None and (now - last_report > REPORT_EVERY_S or self.sim.step == steps):
+            if now - last_report > REPORT_EVERY_S or self.sim.step == steps:
                 last_report = now
-                self.report(self._progress(began, first_step))
+                progress = self._progress(began, first_step)
+                self.log.info("%s", progress)
+                if self.report is not None:
+                    self.report(progress)
             due = now - last_checkpoint > self.scene.case.output.checkpoint_interval_s
             if interrupt.caught or due or self.sim.step == steps:
                 with self.watch("output"):
@@ -304,6 +368,16 @@ class _Runner:
             "audit": checks or [],
         }
         self.out.write_json("run.json", info)
+
+    def sum_up(self, result: RunResult) -> None:
+        """The log's last lines: checks that failed, what is missing, how the run ended."""
+        for check in result.checks:
+            if not check["ok"]:
+                self.log.warning("%s: %.3g %s (limit %g)", *(check[key] for key in ("name", "value", "unit", "limit")))
+        for note in result.notes:
+            self.log.warning("%s", note)
+        wall = ", ".join(f"{name} {seconds:.1f} s" for name, seconds in result.wall_s.items())
+        self.log.info("%s at %.6g s, step %d; wall time: %s", result.stop_reason, result.time_s, result.step, wall)
 
     def close(self) -> None:
         """End the solver's threads."""

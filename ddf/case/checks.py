@@ -13,7 +13,8 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from ddf.case import schema
-from ddf.case.checks_geometry import ply_problems, start_problems, tool_problems
+from ddf.case.checks_geometry import mesh_problems, ply_problems, start_problems, tool_problems
+from ddf.case.checks_values import gap_problem, material_problems
 from ddf.case.faults import KINDS, Problem, closest
 from ddf.case.preset_data import PRESET_DATA
 from ddf.case.schema import with_ply_names
@@ -22,6 +23,8 @@ from ddf.case.words import KeyPath
 T = TypeVar("T")
 
 
+DEFAULT_WEAVE = schema.Ply.model_fields["material"].default
+RESERVED_NAMES = ("bottom-diaphragm", "top-diaphragm", "tool")  # other sheets' files
 _OUTLINE_KEYS = ("size_mm", "polygon_mm", "holes_mm", "slits_mm", "offset_mm", "element_mm")
 
 
@@ -40,6 +43,7 @@ class Parts:
     breakpoints: schema.Breakpoints | None
     shear_tables: dict[str, schema.ShearTable | None]
     rubbers: dict[str, schema.HyperelasticMaterial | None]
+    weaves: dict[str, schema.WovenMaterial | None]
 
 
 def valid_parts(raw: dict[str, Any]) -> Parts:
@@ -58,13 +62,15 @@ def valid_parts(raw: dict[str, Any]) -> Parts:
             for name, table in materials.items()
         },
         rubbers={name: _valid(rubber, table) for name, table in materials.items()},
+        weaves={name: _valid(schema.WovenMaterial.model_validate, table) for name, table in materials.items()},
     )
 
 
 def cross_problems(raw: dict[str, Any], parts: Parts) -> list[Problem]:
     """Return every problem between the valid parts of a case."""
     found = [*_material_uses(raw), *_materials(parts), *_process(raw, parts)]
-    found += _repeated(("plies",), [_name_of(ply) for ply in _items(with_ply_names(raw), "plies")])
+    names = [_name_of(ply) for ply in _items(with_ply_names(raw), "plies")]
+    found += [*_repeated(("plies",), names), *_reserved(names)]
     for place, ply in enumerate(parts.plies):
         if ply is not None and (ply.size_mm is None) != (ply.polygon_mm is None):
             found += ply_problems(ply, ("plies", place), parts.frame)
@@ -72,9 +78,11 @@ def cross_problems(raw: dict[str, Any], parts: Parts) -> list[Problem]:
                 found += start_problems(ply, parts.kinematic.start_mm, place)
     if parts.tool is not None:
         found += tool_problems(parts.tool, parts.frame)
-    if parts.diaphragms and parts.diaphragms.element_max_mm < parts.diaphragms.element_mm:
-        path = ("diaphragms", "element_max_mm")
-        found.append(Problem(path, "is smaller than element_mm", f">= {parts.diaphragms.element_mm:g}"))
+    if parts.diaphragms is not None:
+        found += mesh_problems(parts.diaphragms, parts.frame, parts.plies, parts.tool)
+        materials = [ply.get("material", DEFAULT_WEAVE) for ply in _items(raw, "plies") if isinstance(ply, dict)]
+        found += gap_problem(parts.diaphragms.gap_mm, materials, parts.weaves)
+    found += material_problems(parts.weaves)
     return found
 
 
@@ -116,6 +124,14 @@ def _repeated(path: KeyPath, names: Sequence[str | None]) -> Iterator[Problem]:
         if first != place:
             problem = f"the name {name!r} is already that of {path[-1]}.{first}"
             yield Problem((*path, place, "name"), problem, "a unique name")
+
+
+def _reserved(names: Sequence[str | None]) -> Iterator[Problem]:
+    """Yield a problem for each ply whose files would be those of a diaphragm or of the tool."""
+    for place, name in enumerate(names):
+        if name is not None and name.casefold() in RESERVED_NAMES:
+            problem = f"the name {name!r} is taken by the run's own files"
+            yield Problem(("plies", place, "name"), problem, f"any name but {', '.join(RESERVED_NAMES)}")
 
 
 def _material_uses(raw: dict[str, Any]) -> Iterator[Problem]:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ddf.case.faults import Problem
 from ddf.case.geometry import coinciding_corners, crossing_edges, inside, lines_meet
 from ddf.case.plies import Ply
-from ddf.case.schema import Frame, Tool
+from ddf.case.schema import Diaphragms, Frame, Tool
 from ddf.case.tool import REQUIRED_KEYS
 from ddf.case.words import KeyPath
 
 FRAME_MARGIN_MM = 20.0
+MAX_CUT_POINTS = 10_000  # of all holes and slits of a ply: each is checked against the outline and the other holes
 
 
 def ply_problems(ply: Ply, path: KeyPath, frame: Frame | None) -> Iterator[Problem]:
@@ -24,7 +25,7 @@ def ply_problems(ply: Ply, path: KeyPath, frame: Frame | None) -> Iterator[Probl
     if frame is not None:
         yield from _in_frame(outline, ply, path, outline_path, frame)
     short = float(np.ptp(outline, axis=0).min())
-    if ply.element_mm > 0.5 * short:
+    if ply.element_mm > 0.5 * short > 0.0:
         problem = f"{ply.element_mm:g} is too large for a ply {short:g} mm across"
         yield Problem((*path, "element_mm"), problem, f"<= {0.5 * short:g}")
     broken = list(_polygon(ply.polygon_mm, outline_path)) if ply.polygon_mm is not None else []
@@ -61,6 +62,11 @@ def _polygon(points: tuple[tuple[float, float], ...], path: KeyPath) -> Iterator
 
 def _cuts(ply: Ply, path: KeyPath) -> Iterator[Problem]:
     """Check that holes are simple, inside the outline and apart, and that slits stay inside it."""
+    for key, cuts in (("holes_mm", ply.holes_mm), ("slits_mm", ply.slits_mm)):
+        count = sum(len(cut) for cut in cuts)
+        if count > MAX_CUT_POINTS:
+            yield Problem((*path, key), f"has {count} points in all", f"<= {MAX_CUT_POINTS} points")
+            return
     dx, dy = ply.offset_mm
     outline = tuple((x - dx, y - dy) for x, y in ply.outline_mm())
     sound: list[int] = []
@@ -71,11 +77,12 @@ def _cuts(ply: Ply, path: KeyPath) -> Iterator[Problem]:
         if broken:
             continue
         crosses = lines_meet(hole, outline, closed=(True, True), touching=True)
-        if crosses or not inside(hole, outline).all():
+        if crosses or not inside(hole[:1], outline).all():
             yield Problem(hole_path, "the hole is not inside the outline", "clear of the outline")
         for other in sound:
             if _overlap(hole, ply.holes_mm[other]):
                 yield Problem(hole_path, f"meets or overlaps holes_mm.{other}", "holes apart from each other")
+                break
         sound.append(place)
     for place, slit in enumerate(ply.slits_mm):
         leaves = lines_meet(slit, outline, closed=(False, True), touching=False)
@@ -132,3 +139,28 @@ def _box_corners(tool: Tool) -> np.ndarray:
     turning = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     turned: np.ndarray = np.array([[a, b], [a, -b]]) @ turning
     return turned
+
+
+def mesh_problems(
+    diaphragms: Diaphragms, frame: Frame | None, plies: Sequence[Ply | None], tool: Tool | None
+) -> Iterator[Problem]:
+    """Check that elements are small against frame, plies and tool: a mesh that cannot show their shape is none."""
+    path = ("diaphragms", "element_mm")
+    size = diaphragms.element_mm
+    if diaphragms.element_max_mm < size:
+        yield Problem(("diaphragms", "element_max_mm"), "is smaller than element_mm", f">= {size:g}")
+    sides = [("frame", 0.25 * min(frame.length_mm, frame.width_mm))] if frame is not None else []
+    for ply in plies:
+        if ply is not None and (ply.size_mm is None) != (ply.polygon_mm is None):
+            sides.append(("smallest ply", 0.5 * float(np.ptp(np.asarray(ply.outline_mm()), axis=0).min())))
+    radius = tool.footprint_radius_mm() if tool is not None else None
+    if radius is not None:
+        sides.append(("tool", radius))
+        for place, ply in enumerate(plies):
+            if ply is not None and ply.element_mm > radius:
+                problem = f"{ply.element_mm:g} is too large for a tool {2 * radius:.4g} mm across"
+                yield Problem(("plies", place, "element_mm"), problem, f"<= {radius:.4g}")
+    if sides:
+        what, largest = min(sides, key=lambda side: side[1])
+        if size > largest > 0.0:
+            yield Problem(path, f"{size:g} is too large for the {what}", f"<= {largest:.4g}")

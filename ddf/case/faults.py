@@ -25,6 +25,7 @@ from ddf.case.words import (
 )
 
 KINDS = ("woven", "hyperelastic")
+MOST = 1000  # faults beyond this number are not looked into: the file is no case
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ def closest(word: str, known: Iterable[str]) -> str:
 def problems_of(error: ValidationError, raw: Any) -> list[Problem]:
     """Translate every error of a validation of the whole case `raw`, each problem once."""
     found: dict[Problem, None] = {}
-    for detail in error.errors(include_url=False):
+    for detail in error.errors(include_url=False)[:MOST]:
         problem = _translate(detail, raw)
         if problem is not None:
             found[problem] = None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +21,30 @@ from ddf.case.rules import key_problems
 from ddf.case.schema import Case
 from ddf.errors import CaseError, Fault
 
-MAX_BYTES = 5_000_000
+MAX_BYTES = 1_000_000
 TOOL_SUFFIXES = (".step", ".stp", ".stl")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a case comes from, to give its problems their lines: also those that are found later."""
+
+    file: str = "<case>"
+    text: str = ""
+    changes: tuple[Override, ...] = ()
+    given_lines: Lines | None = None
+
+    @cached_property
+    def lines(self) -> Lines:
+        """Lines of the text's keys."""
+        return locate(self.text) if self.given_lines is None else self.given_lines
+
+    def fault(self, problem: Problem) -> Fault:
+        """Give a problem its place: the line in the file, or the override that set the value."""
+        key = ".".join(str(part) for part in problem.path)
+        change = override_of(problem.path, self.changes)
+        place = ("--set", change.number) if change else (self.file, self.lines.at(problem.path))
+        return Fault(*place, key, problem.problem, problem.allowed, problem.suggestion)
 
 
 def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
@@ -29,11 +53,16 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
     The value of an override is TOML; text may come without quotes. Items of lists go by their place from
     0, as in "plies.0.element_mm=4". Raises CaseError with every fault found.
     """
+    return load_source(path, overrides)[0]
+
+
+def load_source(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Case, Source]:
+    """Do as `load_case` does, and return the source too, for what is found wrong with the case later."""
     file = str(path)
     text = read_text(Path(path), file)
-    raw = parse_toml(text, file)
-    raw, changes, faults = apply_overrides(raw, overrides)
-    return _build(raw, file, locate(text), changes, faults)
+    raw, changes, faults = apply_overrides(parse_toml(text, file), overrides)
+    source = Source(file, text, changes)
+    return _build(raw, source, faults), source
 
 
 def case_from_dict(
@@ -45,7 +74,7 @@ def case_from_dict(
     paths such as ("plies", 0, "element_mm") to lines.
     """
     known = lines if isinstance(lines, Lines) else Lines(dict(lines or {}))
-    return _build(_without_none(dict(d)), file, known, (), [])
+    return _build(_without_none(dict(d)), Source(file, given_lines=known), [])
 
 
 def resolved_toml(case: Case) -> str:
@@ -107,9 +136,9 @@ def parse_toml(text: str, file: str) -> dict[str, Any]:
         raise _refusal(file, "not valid TOML: tables or lists are nested too deep", "") from None
 
 
-def _build(raw: dict[str, Any], file: str, lines: Lines, changes: Sequence[Override], faults: list[Fault]) -> Case:
+def _build(raw: dict[str, Any], source: Source, faults: list[Fault]) -> Case:
     """Validate the tables and return the case, or raise all faults in the order of their lines."""
-    raw, problems = _with_tool_path(raw, Path(file).parent)
+    raw, problems = _with_tool_path(raw, Path(source.file).parent)
     case = None
     try:
         case = Case.model_validate(raw)
@@ -117,18 +146,10 @@ def _build(raw: dict[str, Any], file: str, lines: Lines, changes: Sequence[Overr
         problems += problems_of(error, raw)
     problems += key_problems(raw)
     problems += cross_problems(raw, valid_parts(raw))
-    faults = faults + [_fault(problem, file, lines, changes) for problem in problems]
+    faults = faults + [source.fault(problem) for problem in problems]
     if case is None or faults:
-        raise CaseError(sorted(set(faults), key=lambda fault: (fault.file != file, fault.line, fault.key)))
+        raise CaseError(sorted(set(faults), key=lambda fault: (fault.file != source.file, fault.line, fault.key)))
     return case
-
-
-def _fault(problem: Problem, file: str, lines: Lines, changes: Sequence[Override]) -> Fault:
-    """Give a problem its place: the line in the file, or the override that set the value."""
-    key = ".".join(str(part) for part in problem.path)
-    change = override_of(problem.path, changes)
-    place = ("--set", change.number) if change else (file, lines.at(problem.path))
-    return Fault(*place, key, problem.problem, problem.allowed, problem.suggestion)
 
 
 def _with_tool_path(raw: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Problem]]:

@@ -96,7 +96,7 @@ class HyperelasticMaterial(Section):
         "'classical': W = sum mu/alpha (...).",
     )
     density_kg_m3: float = Field(
-        default=1100.0, gt=0, le=20_000, description="Density [kg/m3] (inferred: usual for silicone)."
+        default=1100.0, ge=50, le=20_000, description="Density [kg/m3] (inferred: usual for silicone)."
     )
 
     @model_validator(mode="before")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from ddf.errors import MeshError
@@ -34,7 +35,8 @@ def gmsh_session(name: str = "ddf") -> Iterator[Any]:
     gmsh = import_gmsh()
     owned = not gmsh.isInitialized()
     if owned:
-        gmsh.initialize(argv=[], readConfigFiles=False, interruptible=False)
+        with _signals_kept():
+            gmsh.initialize(argv=[], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
@@ -46,6 +48,21 @@ def gmsh_session(name: str = "ddf") -> Iterator[Any]:
         raise
     finally:
         if owned:
-            gmsh.finalize()
+            with _signals_kept():
+                gmsh.finalize()
         else:
             gmsh.model.remove()
+
+
+@contextmanager
+def _signals_kept() -> Iterator[None]:
+    """Keep what the program does on signals: gmsh sets SIGTERM and SIGPIPE back to ending it at once."""
+    names = ("SIGINT", "SIGTERM", "SIGPIPE", "SIGHUP")
+    kept = {number: signal.getsignal(number) for name in names if (number := getattr(signal, name, None)) is not None}
+    try:
+        yield
+    finally:
+        with suppress(ValueError):  # not in the main thread
+            for number, handler in kept.items():
+                if handler is not None:
+                    signal.signal(number, handler)

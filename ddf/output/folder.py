@@ -14,6 +14,8 @@ from ddf.output import atomic
 
 #: subfolders and the ending of what is in them
 SUBFOLDERS = {"frames": "vtu", "profiles": "csv", "patterns": "csv", "pictures": "png"}
+#: temporary files, as patterns from the folder's top
+LEFTOVERS = tuple(f"{inner}{atomic.TEMPORARY_PREFIX}*" for inner in ("", *(f"{inner}/" for inner in SUBFOLDERS)))
 #: what ddf writes into a folder, as patterns from its top: all that --force removes
 KNOWN = (
     "case.toml",
@@ -29,7 +31,7 @@ KNOWN = (
     "report.html",
     "*.pvd",
     *(f"{inner}/*.{ending}" for inner, ending in SUBFOLDERS.items()),
-    *(f"{inner}{atomic.TEMPORARY_PREFIX}*" for inner in ("", *(f"{inner}/" for inner in SUBFOLDERS))),
+    *LEFTOVERS,
 )
 #: at least one of these is in any folder that a run was started in
 MARKS = ("run.json", "comparison.json", "case.resolved.toml", "history.csv", "checkpoint.npz", "log.txt")
@@ -49,26 +51,43 @@ class RunFolder:
         removed, other files stay). Raises UsageError for the refusal, DdfError if it cannot be made.
         """
         folder = cls(path)
-        if folder.path.exists() and not folder.path.is_dir():
-            raise UsageError(f"{folder.path} is a file, not a folder", "choose another folder with -o")
+        folder.refuse(force, resume)
         with atomic.write_errors(folder.path):
             folder.path.mkdir(parents=True, exist_ok=True)
-            filled = any(folder.path.iterdir())
-        if filled and force and not resume:
+        if force and not resume:
             folder.empty()
-        elif filled and not resume:
+        return folder
+
+    def refuse(self, force: bool = False, resume: bool = False) -> None:
+        """Raise UsageError if a run may not use the folder, DdfError if it cannot be looked at; change nothing."""
+        with atomic.write_errors(self.path):
+            if self.path.exists() and not self.path.is_dir():
+                raise UsageError(f"{self.path} is a file, not a folder", "choose another folder with -o")
+            filled = self.path.exists() and any(self.path.iterdir())
+        if filled and not resume and not force:
             raise UsageError(
-                f"{folder.path} is not empty",
+                f"{self.path} is not empty",
                 "--resume goes on with the run in it, --force replaces it; or choose another folder with -o",
             )
-        return folder
+
+    @property
+    def started(self) -> bool:
+        """Whether a run was started in the folder."""
+        return any((self.path / name).exists() for name in MARKS)
+
+    def sweep(self) -> None:
+        """Remove temporary files that a killed run has left."""
+        with atomic.write_errors(self.path):
+            for pattern in LEFTOVERS:
+                for file in self.path.glob(pattern):
+                    file.unlink(missing_ok=True)
 
     def __truediv__(self, name: str) -> Path:
         return self.path / name
 
     def empty(self) -> None:
         """Remove what ddf wrote, and its subfolders if nothing else is in them; nothing where no run was."""
-        if not any((self.path / name).exists() for name in MARKS):
+        if not self.started:
             return
         with atomic.write_errors(self.path):
             for pattern in KNOWN:

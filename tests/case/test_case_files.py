@@ -207,3 +207,8 @@ def test_schema_text_has_every_key_with_a_meaning():
             assert node.get("description"), key
     assert "| `fillet_mm` | number | `5.0` | >= 0, <= 50 |" in text
     assert "number or list of 2 numbers" in text
+
+
+def test_the_reference_in_docs_is_the_schema():
+    """After a change of keys: ddf schema > docs/case.md."""
+    assert (CASES[0].parents[1] / "docs/case.md").read_text(encoding="utf-8") == schema_text() + "\n"

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import signal
 
 import numpy as np
@@ -47,7 +48,7 @@ def _rows(folder):
 def test_run_leaves_all_that_is_promised(whole):
     assert whole.stop_reason == "finished"
     for name in (
-        "case.toml", "case.resolved.toml", "run.json", "history.csv", "profiles/ply-1.csv", "wrinkles.csv",
+        "case.toml", "case.resolved.toml", "log.txt", "run.json", "history.csv", "profiles/ply-1.csv", "wrinkles.csv",
         "metrics.json", "checkpoint.npz", "report.html", "ply-1.pvd", "tool.pvd", "pictures/formed-ply-1.png",
         "pictures/shear-ply-1.png", "pictures/distance-ply-1.png", "pictures/outline-ply-1.png",
         "pictures/energies.png",
@@ -73,15 +74,21 @@ def test_finished_run_opens_as_arrays(whole, case):
 def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypatch):
     monkeypatch.setattr(ddf.run, "REPORT_EVERY_S", 0.0)
 
-    def stop_halfway(progress):
-        if progress.step >= progress.steps // 2:
-            os.kill(os.getpid(), signal.SIGINT)
+    def stop_at(share, number):
+        def stop(progress):
+            if progress.step >= progress.steps * share:
+                os.kill(os.getpid(), number)
 
-    first = run_case(case, tmp_path / "run", threads=1, report=stop_halfway)
-    assert first.stop_reason == "interrupted"
-    assert first.step < whole.step
-    second = run_case(case, tmp_path / "run", threads=1, resume=True)
-    assert second.stop_reason == "finished"
+        return stop
+
+    first = run_case(case, tmp_path / "run", threads=1, report=stop_at(0.3, signal.SIGTERM))
+    second = run_case(case, tmp_path / "run", threads=1, report=stop_at(0.6, signal.SIGINT), resume=True)
+    assert (first.stop_reason, second.stop_reason) == ("interrupted", "interrupted")
+    assert 0 < first.step < second.step < whole.step
+    third = run_case(case, tmp_path / "run", threads=1, resume=True)
+    assert third.stop_reason == "finished"
+    log = (tmp_path / "run" / "log.txt").read_text()
+    assert re.search(r"T\d\d:.*started(?s:.*)interrupted(?s:.*)resumed(?s:.*)finished", log)
     with np.load(whole.folder / "checkpoint.npz") as a, np.load(tmp_path / "run" / "checkpoint.npz") as b:
         for name in a.files:
             if name.startswith("state_"):

@@ -1,0 +1,41 @@
+"""Sense of the materials: values that point to a wrong unit, and laws that lose their stiffness."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddf.case import Case, hyperelastic_material, woven_material
+from ddf.materials import ogden
+from ddf.plausible.findings import Findings
+
+FABRIC_KG_M3 = (100.0, 4000.0)
+STRETCHES = np.linspace(1.0, 2.5, 31)  # the range of a forming's diaphragm
+SOFTEST_MPA, STIFFEST_MPA = 0.01, 100.0  # initial shear moduli of rubbers
+
+
+def examine_materials(case: Case, found: Findings) -> None:
+    """Look at every material that is used."""
+    for name in dict.fromkeys(ply.material for ply in case.plies):
+        weave = woven_material(case, name)
+        low, high = FABRIC_KG_M3
+        density = weave.areal_density_gsm / weave.thickness_mm  # g/m2 over mm is kg/m3
+        if not low <= density <= high:
+            problem = f"a density of {density:.3g} kg/m3 is unusual for a fabric"
+            found.warn(("materials", name, "areal_density_gsm"), problem, f"{low:g} to {high:g} kg/m3; check the units")
+        solid = max(weave.membrane_modulus_N_mm) * weave.thickness_mm**2 / 12.0
+        if max(weave.bending_rigidity_Nmm) > solid:
+            problem = f"{max(weave.bending_rigidity_Nmm):g} is more than that of a solid plate of this modulus"
+            found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f"<= {solid:.3g}; check the units")
+    name = case.diaphragms.material
+    terms = hyperelastic_material(case, name).abaqus_terms
+    modulus = ogden.initial_shear_modulus(terms)
+    if not SOFTEST_MPA <= modulus <= STIFFEST_MPA:
+        problem = f"an initial shear modulus of {modulus:.3g} MPa is not that of a rubber"
+        found.warn(("materials", name, "ogden"), problem, f"{SOFTEST_MPA:g} to {STIFFEST_MPA:g} MPa; check the units")
+    for mode in ("uniaxial", "planar"):
+        falls = np.flatnonzero(np.diff(ogden.biot_stress(terms, STRETCHES, mode)) <= 0.0)
+        if falls.size:
+            stretch = STRETCHES[falls[0]]
+            problem = f"the {mode} force falls beyond a stretch of {stretch:.3g}: the diaphragm can tear locally"
+            found.warn(("materials", name, "ogden"), problem, "terms whose force rises up to a stretch of 2.5")
+            break
