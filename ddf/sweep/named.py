@@ -35,24 +35,33 @@ def loading(case: Case) -> list[Point]:
     """
     stages = [stage.model_dump(exclude_none=True) for stage in case.process.stages or ()]
     lift = next((k for k, stage in enumerate(stages) if stage.get("tool_lift_mm")), None)
-    box = next((k for k, stage in enumerate(stages) if "box_pressure_kPa" in stage), None)
-    if lift is None or box is None or lift == box:
+    box = [k for k, stage in enumerate(stages) if "box_pressure_kPa" in stage]
+    if lift is None or not box or lift in box or box[-1] - box[0] != len(box) - 1:
         raise UsageError(
-            "the sweep 'loading' needs a case whose process has a stage that lifts the tool and another that "
-            "evacuates the box",
+            "the sweep 'loading' needs a case whose process has a stage that lifts the tool and, one after the other, "
+            "others that evacuate the box",
             "choose another case with --case",
         )
-    first, second = sorted((lift, box))
-    between, after = stages[first + 1 : second], stages[second + 1 :]
-    damping = {key: stages[box][key] for key in ("mass_damping_1_s",) if key in stages[box]}
-    longest = max(stages[lift]["duration_s"], stages[box]["duration_s"])
-    both = stages[box] | stages[lift] | {"name": "lift-and-evacuate-box", "duration_s": longest} | damping
+    first, last = min(lift, box[0]), max(lift, box[-1])
+    between = [stage for k, stage in enumerate(stages) if first < k < last and k != lift and k not in box]
+    vacuum = stages[box[0] : box[-1] + 1]
+    damping = {key: vacuum[0][key] for key in ("mass_damping_1_s",) if key in vacuum[0]}
+    share = stages[lift]["duration_s"] / sum(stage["duration_s"] for stage in vacuum)
+    reached, total, together = 0.0, sum(stage["duration_s"] for stage in vacuum), []
+    for stage in vacuum:  # the lift goes on through all stages of the vacuum, which take the longer time of the two
+        reached += stage["duration_s"]
+        lifted = {"tool_lift_mm": stages[lift]["tool_lift_mm"] * reached / total}
+        longer = {"duration_s": stage["duration_s"] * max(1.0, share)}
+        together.append(stage | lifted | longer | {"name": f"lift-and-{stage['name']}"})
     orders = {
-        "lift-then-vacuum": [stages[lift], *between, stages[box]],
-        "together": [*between, both],
-        "vacuum-then-lift": [stages[box], *between, stages[lift] | damping],
+        "lift-then-vacuum": [stages[lift], *between, *vacuum],
+        "together": [*between, *together],
+        "vacuum-then-lift": [*vacuum, *between, stages[lift] | damping],
     }
-    return [Point(name, {"process.stages": [*stages[:first], *order, *after]}) for name, order in orders.items()]
+    return [
+        Point(name, {"process.stages": [*stages[:first], *order, *stages[last + 1 :]]})
+        for name, order in orders.items()
+    ]
 
 
 def layup(case: Case) -> list[Point]:

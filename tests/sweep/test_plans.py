@@ -129,12 +129,13 @@ def test_ready_made_sweeps_change_what_they_say():
     assert [case.friction.ply_ply for case in cases["friction"]] == [0.0, 0.14, 0.28, 0.42]
     assert all([p.orientation_deg for p in case.plies] == [45.0, 0.0] for case in cases["friction"])
     lift_first, together, box_first = (case.process.stages for case in cases["loading"])
-    assert [s.name for s in lift_first] == ["evacuate-cavity", "lift", "evacuate-box", "hold"]
-    assert [s.name for s in box_first] == ["evacuate-cavity", "evacuate-box", "lift", "hold"]
-    assert [s.mass_damping_1_s for s in lift_first] == [None, None, 300.0, 300.0]
-    assert [s.mass_damping_1_s for s in box_first] == [None, 300.0, 300.0, 300.0]
-    assert len(together) == 3
-    assert (together[1].tool_lift_mm, together[1].box_pressure_kPa) == (82.0, 0.0)
+    assert [s.name for s in lift_first] == ["evacuate-cavity", "lift", "draw-down", "evacuate-box", "hold"]
+    assert [s.name for s in box_first] == ["evacuate-cavity", "draw-down", "evacuate-box", "lift", "hold"]
+    assert [s.mass_damping_1_s for s in lift_first] == [None, None, 100.0, 100.0, 300.0]
+    assert [s.mass_damping_1_s for s in box_first] == [None, 100.0, 100.0, 100.0, 300.0]
+    assert len(together) == 4
+    assert [s.tool_lift_mm for s in together[1:3]] == pytest.approx([82.0 * 7 / 11, 82.0])
+    assert [s.box_pressure_kPa for s in together[1:3]] == [94.0, 0.0]
     assert [[p.orientation_deg for p in case.plies] for case in cases["layup"]] == [[0], [45], [45, 0], [0, 45]]
     assert [case.plies[0].element_mm for case in cases["mesh"]] == [8.0, 6.0, 4.0, 3.0]
     assert {case.tool.shape for case in cases["tool"]} == {"cube-corner-tetrahedron", "regular-tetrahedron"}
