@@ -187,7 +187,7 @@ def _masses(case: Case, stack: _Stack, density: float, tangents: list[float]) ->
             scales.append(max(1.0, (solver.target_step_s / step) ** 2))
         else:
             scales.append(solver.mass_scaling if solver.mass_scaling is not None else 1.0)
-    skin = density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
+    skin = solver.diaphragm_mass_scaling * density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
     plies = [m.areal_density_gsm * TONNE_PER_GSM_MM2 * s for m, s in zip(stack.materials, scales, strict=True)]
     return scales, [skin, *plies, skin]
 
@@ -408,8 +408,8 @@ def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
         parts.append(x.ravel())
     x = np.concatenate(parts)
     bottom = model.sheets[0]
-    cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1) if model.tool_sheet >= 0 else (1, 1)
-    anchors = np.zeros((*cells, 4, 3))
+    nodes = (int(bottom["rows"]), int(bottom["cols"])) if model.tool_sheet >= 0 else (1, 1)
+    anchors = np.zeros((*nodes, 5, 3))
     anchors[..., 0] = FREE
     return State(
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
@@ -428,7 +428,7 @@ def _infos(case: Case, stack: _Stack, model: Model, scales: list[float]) -> tupl
         s = model.sheets[k]
         a, n = int(s["node"]), int(s["rows"] * s["cols"])
         mass = float(model.mass[a : a + n].sum())
-        scale = scales[k - 1] if s["kind"] == PLY else 1.0
+        scale = scales[k - 1] if s["kind"] == PLY else case.solver.diaphragm_mass_scaling
         kind = "ply" if s["kind"] == PLY else "diaphragm"
         infos.append(SheetInfo(name, kind, stack.thickness[k], scale, mass / scale, mass - mass / scale, mesh))
     return tuple(infos)

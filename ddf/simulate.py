@@ -34,15 +34,15 @@ def make_work(model: Model, members: int) -> Work:
             bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
     longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom = model.sheets[0]
-    cells = (int(bottom["rows"]) - 1, int(bottom["cols"]) - 1)
     return Work(
         scratch=np.zeros((members, max(SCRATCH_ROWS * widest, bending.SCRATCH, shear.SCRATCH))),
         packed=np.zeros(4 * model.mass.size), rates=np.zeros(4 * model.mass.size),
         buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
-        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, CARRY, widest)),
+        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, CARRY)),
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
         pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, CARRY)),
-        sleep=np.zeros(cells, np.int16), rest=np.zeros(model.exposed.size, np.int8),
+        sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
+        rest=np.zeros(model.exposed.size, np.int8),
         bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
         lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 9 * longest * LINES)),
     )  # fmt: skip

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 
-DEFAULT_MASS_SCALING = 20.0
+DEFAULT_MASS_SCALING = 8.0
 
 
 class Solver(Section):
@@ -18,7 +18,7 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass (inferred); left out without target_step_s: 20. "
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 8. "
         "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
@@ -26,6 +26,9 @@ class Solver(Section):
         gt=0,
         le=1e-2,
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
+    )
+    diaphragm_mass_scaling: float = Field(
+        default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
     step_safety: float = Field(default=0.9, gt=0, le=1, description="Step as a fraction of the stable one.")

@@ -69,12 +69,12 @@ class Work(NamedTuple):
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
     chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
     sums: np.ndarray  # (members, 4)
-    carry: np.ndarray  # (blocks, CARRY, widest + 2) row of the next block, from the tool's contact
+    carry: np.ndarray  # (blocks, widest + 2, CARRY) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
     give: np.ndarray  # (members, CARRY)
-    sleep: np.ndarray  # (n-1, m-1) int16: steps that a cell of the tool's sheet sleeps
+    sleep: np.ndarray  # (n, m) int16: steps in which a node need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
     bundles2: np.ndarray  # (k, 3): sheet, first and last+1 row: lines of family 2
@@ -206,9 +206,10 @@ def _tool(model, state, work, member, row, b, dt, reach):
     law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
     done, work.carried[b] = tool_forces(
         vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet),
-        work.press.reshape((PRESS, sheet.rows, sheet.cols)), work.pressed, carry, dx, dy,
+        work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
         state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
+        work.scratch[member, : 8 * sheet.cols].reshape((2, 4, sheet.cols)),
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]
@@ -246,18 +247,18 @@ def _settle_tool(model, state, work, row, b):
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     f, v, mass = vectors(state.f, sheet), vectors(state.v, sheet), scalars(model.mass, sheet)
-    press = work.press.reshape((PRESS, sheet.rows, sheet.cols))
+    press = work.press.reshape((sheet.rows, sheet.cols, PRESS))
     if block.low > 0 and work.carried[b - 1]:
         carry = work.carry[b - 1]
         for j in range(sheet.cols):
             for c in range(3):
-                f[c, block.low, j] += carry[c, j]
+                f[c, block.low, j] += carry[j, c]
             for c in range(PRESS):
-                press[c, block.low, j] += carry[3 + c, j]
+                press[block.low, j, c] += carry[j, 3 + c]
         work.pressed[block.low] = True
     for i in range(block.low, block.high):
         if work.pressed[i]:
-            done, lost = settle_row(v[:, i], f[:, i], press[:, i], mass[i], row[TOOL_SPEED], model.dt)
+            done, lost = settle_row(v[:, i], f[:, i], press[i], mass[i], row[TOOL_SPEED], model.dt)
             state.ledger[b, TOOL_WORK] += done
             state.ledger[b, TOOL_DAMPING] += lost
             work.pressed[i] = False

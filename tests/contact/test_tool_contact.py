@@ -99,10 +99,10 @@ def test_friction_stays_in_its_cone_and_never_gives_energy():
         v = 0.9 * v + rng.normal(size=x.shape) * np.array([200.0, 200.0, 30.0])[:, None, None]
         v[2] -= 2e3 * (x[2] - 0.7)
         x = x + dt * v
-        f = tool.forces(x, v, dt=dt).sum(axis=(1, 2))
-        assert f[2] >= 0.0
-        assert np.hypot(f[0], f[1]) <= 0.3 * f[2] * (1.0 + 1e-9) + 1e-15
-        slid += np.hypot(f[0], f[1]) > 0.29 * f[2]
+        f = tool.forces(x, v, dt=dt)
+        assert (f[2] >= 0.0).all()
+        assert (np.hypot(f[0], f[1]) <= 0.3 * f[2] * (1.0 + 1e-9) + 1e-15).all()
+        slid += np.count_nonzero((np.hypot(f[0], f[1]) > 0.29 * f[2]) & (f[2] > 0.0))
         assert tool.out[2] >= -1e-12
     assert slid > 20
 
@@ -151,12 +151,13 @@ def test_implicit_step_solves_its_equation_and_books_what_it_takes():
     mass = rng.uniform(1e-9, 4e-9, x.shape[1:])
     mass[2, 1] = 0.0  # held
     touch = tool.forces(x, v, speed=speed, dt=dt)
-    viscous, tensor = tool.press[6:].copy(), tool.press[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3, *mass.shape).copy()
+    press = np.moveaxis(tool.press, -1, 0)
+    viscous, tensor = press[6:].copy(), press[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3, *mass.shape)
     assert tensor[0, 0].max() > mass.max()  # far beyond what an explicit step could do
     total, work, lost = touch + others, 0.0, 0.0
     settled = total.copy()
     for i in range(x.shape[1]):
-        done, gone = settle_row(v[:, i], settled[:, i], tool.press[:, i], mass[i], speed, dt)
+        done, gone = settle_row(v[:, i], settled[:, i], tool.press[i], mass[i], speed, dt)
         work, lost = work + done, lost + gone
     assert not tool.press.any()
     expected_lost = expected_work = 0.0

@@ -99,7 +99,9 @@ class Tool:
         self.values = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32))
         self.law = (0.75, stiffness, damping, friction)
         self.dx, self.dy = (np.asarray(a, dtype=float) for a in cells)
-        self.anchors = np.full((self.dx.size, self.dy.size, 4, 3), FREE)
+        self.anchors = np.full((self.dx.size + 1, self.dy.size + 1, 5, 3), FREE)
+        x, y = (0.5 * (np.pad(d, (1, 0)) + np.pad(d, (0, 1))) for d in (self.dx, self.dy))
+        self.area = x[:, None] * y[None, :]
         self.out, self.work = np.zeros(4), 0.0
 
     def forces(self, x, v=None, *, z=0.0, speed=0.0, dt=1e-6, seam=None):
@@ -107,19 +109,19 @@ class Tool:
         f = np.zeros_like(x)
         v = np.zeros_like(x) if v is None else v
         self.out, self.work = np.zeros(4), 0.0
-        self.press, pressed = np.zeros((PRESS, n, m)), np.zeros(n, bool)
-        sleep = np.zeros((n - 1, m - 1), np.int16)
+        self.press, pressed = np.zeros((n, m, PRESS)), np.zeros(n, bool)
+        sleep = np.zeros((n, m), np.int16)
         for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
-            carry = np.zeros((CARRY, m + 2))
+            carry = np.zeros((m + 2, CARRY))
             work, _ = tool_forces(
-                x, v, f, self.press, pressed, carry, self.dx, self.dy,
+                x, v, f, self.press, pressed, carry, self.area, self.dx, self.dy,
                 self.values, self.origin, self.spacing, self.law, (z, speed), 1e6, dt, self.anchors, sleep, low, high,
-                self.out, np.zeros(CARRY),
+                self.out, np.zeros(CARRY), np.zeros((2, 4, m)),
             )  # fmt: skip
             self.work += work
             if high < n:
-                f[:, high] += carry[:3, :m]
-                self.press[:, high] += carry[3:, :m]
+                f[:, high] += carry[:m, :3].T
+                self.press[high] += carry[:m, 3:]
         return f
 
 
