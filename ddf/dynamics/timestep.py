@@ -34,8 +34,8 @@ def diaphragm_omega2(
 ) -> float:
     """Bound of omega^2 of a diaphragm with square elements of the given size.
 
-    Membrane 16 mu t (2/a^2)/m (the largest plane-stress modulus of a rubber is 4 mu at rest), plate
-    16 D (2/a^2)^2/m, contact 2 K/m.
+    Membrane 32 mu t/a^2/m (the largest plane-stress modulus of a rubber is 4 mu at rest: half of that for one point a
+    cell, the rest for what forming adds), plate 16 D (2/a^2)^2/m, contact 2 K/m.
     """
     q = 2.0 / element**2
     return (16.0 * mu * thickness * q + 16.0 * rigidity * q * q + 2.0 * contact) / mass
