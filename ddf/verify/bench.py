@@ -7,7 +7,7 @@ A `Sheet` is its start, its reference and its law; `assemble` makes of sheets, c
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -218,13 +218,8 @@ def _step(sheets: Sequence[Sheet], touches: Sequence[Touch]) -> float:
     return SAFETY * min(limits)
 
 
-def drive(
-    bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float, each: Callable[[], None] = lambda: None
-) -> None:
-    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time.
-
-    each: called after every CHUNK of steps.
-    """
+def drive(bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float) -> None:
+    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time."""
     held = sheet_scalars(bench.model, bench.model.inverse_mass, k) == 0.0
     x, v = bench.x(k), bench.v(k)
     start, dt = x.copy(), bench.model.dt
@@ -234,7 +229,6 @@ def drive(
         aim = start + share * (target - start)
         v[:, held] = ((aim - x) / (CHUNK * dt))[:, held]
         sim.advance(CHUNK)
-        each()
     v[:, held] = 0.0
 
 

@@ -35,7 +35,7 @@ CELLS, QUICK_CELLS = 16, 12
 """Diagonals of a cell over the width."""
 ANGLES_DEG, QUICK_ANGLES_DEG = np.array([5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0]), np.array([20.0, 35.0])
 """Angles of the zones at whose way the grips halt."""
-FORCE_UP_TO_DEG = 35.0
+FORCE_UP_TO_DEG = 40.0
 MIDDLE_MM = WIDTH_MM / 6.0
 DAMPING_1_S = 100.0
 SPEED_MM_S = 150.0

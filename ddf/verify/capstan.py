@@ -37,7 +37,7 @@ from ddf.verify.tool_fields import cylinder, gridded
 BOUND = 2e-2
 RADIUS, WIDTH, STRAIGHT, ELEMENT = 20.0, 8.0, 16.0, 2.0  # mm
 AXIS = 100.0  # height of a tool's axis above its platform [mm]
-TENSION = 0.5  # of the leading end when the strip is tight [N/mm]
+TENSION = {"tool": 0.5, "layer": 2.0}  # of the leading end when the strip is tight: much above D/R^2 [N/mm]
 SPEED, WAY, JUDGED = 100.0, 5.0, 2.5  # mm/s, mm: way of both ends, and the last part of it that is averaged
 TIGHTEN = {"tool": 40.0, "layer": 5.0}  # speed of the leading end before [mm/s]
 DAMPING = 30.0  # 1/s
@@ -122,7 +122,7 @@ def draw(options: Options, kind: str, degrees: float, friction: float) -> tuple[
     strip = make_strip(options, kind, degrees, friction)
     sim = strip.bench.simulation(options.threads)
     strip.go(0.0, TIGHTEN[kind])
-    while strip.tension()[1] < TENSION and sim.time < 1.0:
+    while strip.tension()[1] < TENSION[kind] and sim.time < 1.0:
         sim.advance(CHUNK)
     strip.go(SPEED, SPEED)
     start, looks = sim.time, []
