@@ -183,9 +183,9 @@ def solve(options: Options) -> Answer:
         bound = None if "ply" in name else BOUND
         checks.append(Check(f"angular momentum lost, {name}", "-", 0.0, float(h.angular.max()), bound, relative=False))
         every = np.s_[:: max(1, steps // 60)]
-        curves.append(Curve(name, table["step"][every], np.log10(np.maximum(h.angular, 1e-18))[every], True))
+        curves.append(Curve(name, table["step"][every], np.log10(np.maximum(h.moment, 1e-18))[every], True))
         key = name.replace(" ", "_")
-        table |= {f"{key}_linear": h.linear, f"{key}_angular": h.angular}
+        table |= {f"{key}_linear": h.linear, f"{key}_angular": h.angular, f"{key}_moment": h.moment}
     for name, (below, above) in PAIRS.items():
         checks.append(
             Check(f"moment of forces, {name}", "-", 0.0, float(seen[name].moment.max()), BOUND, relative=False)
@@ -202,7 +202,7 @@ def solve(options: Options) -> Answer:
         for name, h in (*seen.items(), ("tool with friction", rubbed))
     ]
     curves.append(Curve("bound", np.array([0.0, steps]), np.log10(np.full(2, BOUND))))
-    return Answer(tuple(checks), Figure("step", "log10 of angular momentum lost", tuple(curves)), table, tuple(notes))
+    return Answer(tuple(checks), Figure("step", "log10 of the forces' moment", tuple(curves)), table, tuple(notes))
 
 
 PROBLEM = Problem("momentum", "Momentum and heat of contact under any motion", "conservation laws", solve)

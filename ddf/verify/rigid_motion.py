@@ -100,7 +100,7 @@ def solve(options: Options) -> Answer:
     checks.append(Check("the same at half the step, over it", "1", 0.5, ratio, RATIO_BOUND))
     at = np.arange(1, LOOKS + 1) * (steps // LOOKS)
     curves = (
-        Curve("bound", at[[0, -1]].astype(float), np.full(2, BOUND)),
+        Curve("bound of the linear", at[[0, -1]].astype(float), np.full(2, BOUND)),
         Curve("linear", at.astype(float), np.maximum(drift[0], 1e-20), points=True),
         Curve("angular", at.astype(float), np.maximum(drift[1], 1e-20), points=True),
     )
