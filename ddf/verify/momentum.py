@@ -183,7 +183,8 @@ def solve(options: Options) -> Answer:
         bound = None if "ply" in name else BOUND
         checks.append(Check(f"angular momentum lost, {name}", "-", 0.0, float(h.angular.max()), bound, relative=False))
         every = np.s_[:: max(1, steps // 60)]
-        curves.append(Curve(name, table["step"][every], np.log10(np.maximum(h.moment, 1e-18))[every], True))
+        if name in PAIRS:
+            curves.append(Curve(name, table["step"][every], np.log10(np.maximum(h.moment, 1e-18))[every], True))
         key = name.replace(" ", "_")
         table |= {f"{key}_linear": h.linear, f"{key}_angular": h.angular, f"{key}_moment": h.moment}
     for name, (below, above) in PAIRS.items():
