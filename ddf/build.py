@@ -67,7 +67,7 @@ def build_scene(case: Case) -> Scene:
     dt = limit if case.solver.step_s is None else case.solver.step_s
     pools = _pools(case, stack, sheets, masses)
     pairs, exposed, places = _pairs(case, stack, masses, sheets)
-    blocks = _blocks(sheets)
+    blocks = row_blocks(sheets)
     friction, solver = case.friction, case.solver
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
     model = Model(
@@ -85,7 +85,7 @@ def build_scene(case: Case) -> Scene:
         tool_mass=masses[0], tool_friction=friction.diaphragm_tool,
         gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
-    state = _initial_state(stack, model, places)
+    state = state_at_rest(model, _flat_positions(stack), places)
     height = 0.0 if tool_mesh is None or case.tool is None else _nominal_height(case.tool, tool_mesh)
     face = stack.z[0] - 0.5 * stack.thickness[0]
     return Scene(
@@ -258,7 +258,7 @@ def _pair_damping(case: Case, masses: list[float], a: int, b: int) -> float:
     return timestep.contact_damping(s.contact_damping, s.contact_stiffness_N_mm3, masses[a], masses[b])
 
 
-def _corner_sum(cells: FloatArray) -> FloatArray:
+def corner_sum(cells: FloatArray) -> FloatArray:
     """Quarter of the cells around each node, (n, m) from (n-1, m-1)."""
     p = np.pad(cells, 1)
     return 0.25 * (p[1:, 1:] + p[:-1, 1:] + p[1:, :-1] + p[:-1, :-1])
@@ -281,7 +281,7 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
-            values["area"], values["cell"] = _corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
+            values["area"], values["cell"] = corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
             span = np.tile([0, m], (n, 1))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
@@ -314,18 +314,39 @@ def _lattice(ply: PlyMesh) -> dict[str, FloatArray]:
     triple1[1:] = a1 * np.minimum(bar1[1:], bar1[:-1])
     triple2[:, 1:] = a2 * np.minimum(bar2[:, 1:], bar2[:, :-1])
     return {
-        "area": a1 * a2 * _corner_sum(share), "cell": a1 * a2 * np.pad(share, ((0, 1), (0, 1))),
+        "area": a1 * a2 * corner_sum(share), "cell": a1 * a2 * np.pad(share, ((0, 1), (0, 1))),
         "bar1": bar1, "bar2": bar2, "triple1": triple1, "triple2": triple2,
     }  # fmt: skip
 
 
-def _blocks(sheets: np.ndarray) -> np.ndarray:
+def row_blocks(sheets: np.ndarray) -> np.ndarray:
     """Fixed blocks of rows of every sheet: the unit of parallel work and of all sums."""
     rows = []
     for k, s in enumerate(sheets):
         size = max(4, math.ceil(int(s["rows"]) / BLOCKS_A_SHEET))
         rows += [(k, low, min(low + size, int(s["rows"]))) for low in range(0, int(s["rows"]), size)]
     return np.array(rows, dtype=BLOCK)
+
+
+def first_places(place: FloatArray) -> FloatArray:
+    """A pair's entries in the state's `place` before the first step, from grid coordinates (2, n, m) on the master."""
+    unknown, zeros = np.full((1, *place.shape[1:]), UNKNOWN), np.zeros((2, *place.shape[1:]))
+    return np.concatenate([place, unknown, zeros]).ravel()
+
+
+def state_at_rest(model: Model, x: FloatArray, places: FloatArray) -> State:
+    """A fresh state: positions x (3 N,), first places of all pairs, nothing in motion, no tension, no anchor."""
+    sheet = model.sheets[model.tool_sheet]
+    nodes = (int(sheet["rows"]), int(sheet["cols"])) if model.tool_sheet >= 0 else (1, 1)
+    anchors = np.zeros((*nodes, 5, 3))
+    anchors[..., 0] = FREE
+    return State(
+        x=x, v=np.zeros_like(x), f=np.zeros_like(x),
+        place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors,
+        tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
+        ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
+        clock=np.zeros(2),
+    )  # fmt: skip
 
 
 def _depth_inside(ply: PlyMesh, points: FloatArray) -> FloatArray:
@@ -371,9 +392,7 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))
         exposed.append(follow.ravel())
-        places.append(
-            np.concatenate([place, np.full((1, *follow.shape), UNKNOWN), np.zeros((2, *follow.shape))]).ravel()
-        )
+        places.append(first_places(place))
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
         size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
         blocks = math.ceil(int(sheets[slave]["rows"]) / size)
@@ -399,25 +418,15 @@ def _follow(stack: _Stack, slave: int, master: int) -> tuple[NDArray[np.bool_], 
     return follow, place
 
 
-def _initial_state(stack: _Stack, model: Model, places: FloatArray) -> State:
+def _flat_positions(stack: _Stack) -> FloatArray:
+    """Positions (3 N,) of all sheets, flat at their heights in the stack [mm]."""
     meshes: list[PlyMesh | DiaphragmMesh] = [stack.diaphragm, *stack.plies, stack.diaphragm]
     parts = []
     for mesh, z in zip(meshes, stack.z, strict=True):
         x = np.array(mesh.x, dtype=float)
         x[2] = z
         parts.append(x.ravel())
-    x = np.concatenate(parts)
-    bottom = model.sheets[0]
-    nodes = (int(bottom["rows"]), int(bottom["cols"])) if model.tool_sheet >= 0 else (1, 1)
-    anchors = np.zeros((*nodes, 5, 3))
-    anchors[..., 0] = FREE
-    return State(
-        x=x, v=np.zeros_like(x), f=np.zeros_like(x),
-        place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors,
-        tension1=np.zeros(x.size // 3), tension2=np.zeros(x.size // 3),
-        ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
-        clock=np.zeros(2),
-    )  # fmt: skip
+    return np.concatenate(parts)
 
 
 def _infos(case: Case, stack: _Stack, model: Model, scales: list[float]) -> tuple[SheetInfo, ...]:

@@ -95,14 +95,24 @@ def largest_square(v):
 
 
 @njit(**FAST)
+def _weigh_row(f, gravity, mass):
+    """F <- m g, one component of a row."""
+    for j in range(f.shape[0]):
+        f[j] = gravity * mass[j]
+
+
+@njit(**FAST)
 def _internal(model, state, row, b, scratch):
-    """Internal forces and pressure of a block's rows; they are cleared first."""
+    """Gravity, internal forces and pressure of a block's rows; what was there is overwritten."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     x, f = vectors(state.x, sheet), vectors(state.f, sheet)
     low, high = block.low, block.high
     w = scratch[: SCRATCH_ROWS * (sheet.cols + 2)].reshape((SCRATCH_ROWS, sheet.cols + 2))
-    f[:, low:high] = 0.0
+    mass = scalars(model.mass, sheet)
+    for i in range(low, high):
+        for c in range(3):
+            _weigh_row(f[c, i], model.gravity[c], mass[i])
     if sheet.kind == PLY:
         shear_forces(x, f, scalars(model.cell, sheet), model.shear_tables[sheet.shear], low, high, scratch)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
@@ -265,14 +275,13 @@ def _settle_tool(model, state, work, row, b):
 
 
 @njit(**FAST)
-def _kick_row(v, f, inverse_mass, mass, damping, gravity, dt):
+def _kick_row(v, f, inverse_mass, mass, damping, dt):
     """V <- damping v + dt f / m, one component of a row; returns sum m v^2 and sum f v before the kick.
 
-    Gravity is added to f first. Held nodes (no inverse mass) keep their velocity.
+    Held nodes (no inverse mass) keep their velocity.
     """
     square = power = 0.0
     for j in range(v.shape[0]):
-        f[j] += gravity * mass[j]
         square += mass[j] * v[j] * v[j]
         power += f[j] * v[j]
         keep = damping if inverse_mass[j] > 0.0 else 1.0
@@ -302,7 +311,7 @@ def _kick(model, state, b, damping, scratch):
     square = power = 0.0
     for i in range(block.low, block.high):
         for c in range(3):
-            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, model.gravity[c], dt)
+            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, dt)
             square += p
             power += q
             if sheet.kind != PLY:

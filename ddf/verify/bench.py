@@ -7,7 +7,7 @@ A `Sheet` is its start, its reference and its law; `assemble` makes of sheets, c
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -15,23 +15,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from ddf.build import _blocks, _corner_sum
+from ddf.build import corner_sum, first_places, row_blocks, state_at_rest
 from ddf.case import HyperelasticMaterial, WovenMaterial
-from ddf.contact.layers import UNKNOWN
 from ddf.contact.patch import patch_centres
-from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
 from ddf.elements.bending import tangent_weights
 from ddf.loads.path import LoadPath, smooth_ramp
 from ddf.materials import ogden, shear_law
 from ddf.model import (
     DIAPHRAGM,
-    LEDGER,
     PAIR,
     PLY,
     PRESSURE_BOTTOM,
     SHEET,
-    SPRINGS,
     Model,
     State,
     sheet_scalars,
@@ -84,25 +80,17 @@ def assemble(
     tool_damping = timestep.contact_damping(tool.damping, stiff, mass0, math.inf) if tool else 0.0
     lines = [np.concatenate([np.diff(s.lines[0]), np.diff(s.lines[1])]) for s in sheets]
     model = Model(
-        sheets=records, blocks=_blocks(records), pairs=pairs, **_pools(sheets, records), lines=np.concatenate(lines),
+        sheets=records, blocks=row_blocks(records), pairs=pairs, **_pools(sheets, records), lines=np.concatenate(lines),
         shear_tables=tables, ogden=_terms(sheets), exposed=exposed,
         tool=tool.field.values if tool else np.zeros((2, 2, 2, 4), np.float32),
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
         tool_offset=0.5 * sheets[0].thickness, tool_stiffness=stiff, tool_damping=tool_damping, tool_mass=mass0,
         tool_friction=tool.friction if tool else 0.0, gravity=np.asarray(gravity, dtype=float),
-        dt=_step(sheets, touches, stiff, tool_damping),
+        dt=_step(sheets, touches),
     )  # fmt: skip
     x = np.concatenate([s.start.ravel() for s in sheets])
-    n, m = sheets[0].held.shape
-    anchors = np.zeros((n - 1, m - 1, 4, 3))
-    anchors[..., 0] = FREE
-    state = State(
-        x=x, v=np.zeros_like(x), f=np.zeros_like(x), place=place[0], anchor=place[1], tool_anchor=anchors,
-        ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
-        clock=np.zeros(2),
-    )  # fmt: skip
-    return Bench(model, state, path, tool.base_z if tool else 0.0)
+    return Bench(model, state_at_rest(model, x, place), path, tool.base_z if tool else 0.0)
 
 
 def _records(sheets: Sequence[Sheet]) -> tuple[np.ndarray, FloatArray]:
@@ -149,7 +137,7 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray
 
     for s, r in zip(sheets, records, strict=True):
         n, m = s.held.shape
-        area, zero = _corner_sum(s.cells), np.zeros((n, m))
+        area, zero = corner_sum(s.cells), np.zeros((n, m))
         bar1 = bar2 = triple1 = triple2 = zero
         if r["kind"] == PLY:
             bar1, bar2, triple1, triple2 = (zero.copy() for _ in range(4))
@@ -181,14 +169,11 @@ def _places(points: FloatArray, surface: FloatArray) -> FloatArray:
     return place.reshape(2, *points.shape[1:])
 
 
-def _pairs(
-    sheets: Sequence[Sheet], touches: Sequence[Touch]
-) -> tuple[np.ndarray, BoolArray, tuple[FloatArray, FloatArray]]:
-    """PAIR records, followed nodes, first places and anchors; all slave nodes that are not held are followed."""
+def _pairs(sheets: Sequence[Sheet], touches: Sequence[Touch]) -> tuple[np.ndarray, BoolArray, FloatArray]:
+    """PAIR records, followed nodes and first places; all slave nodes that are not held are followed."""
     records: list[tuple[float, ...]] = []
     exposed: list[np.ndarray] = [np.zeros(0, bool)]
     places: list[np.ndarray] = [np.zeros(0)]
-    anchors: list[np.ndarray] = [np.zeros(0)]
     first = buffer = span = 0
     for t in touches:
         slave, master = sheets[t.slave], sheets[t.master]
@@ -203,47 +188,38 @@ def _pairs(
         )
         place = _places(slave.start, master.start)
         exposed.append(~slave.held.ravel())
-        places.append(np.stack([*place, np.full(place[0].shape, UNKNOWN), np.zeros(place[0].shape)]).ravel())
-        anchors.append(place.ravel())
+        places.append(first_places(place))
         rows = slave.held.shape[0]
         blocks = math.ceil(rows / max(4, math.ceil(rows / 12)))
         first += slave.held.size
         buffer += 4 * master.held.size * blocks
         span += master.held.shape[0] * blocks
     table = np.array(records, dtype=PAIR) if records else np.zeros(0, PAIR)
-    return table, np.concatenate(exposed), (np.concatenate(places), np.concatenate(anchors))
+    return table, np.concatenate(exposed), np.concatenate(places)
 
 
-def _step(sheets: Sequence[Sheet], touches: Sequence[Touch], tool: float, tool_damping: float) -> float:
+def _step(sheets: Sequence[Sheet], touches: Sequence[Touch]) -> float:
     """Stable step [s], the least of all sheets that move, times SAFETY."""
     limits = []
     for k, s in enumerate(sheets):
         mine = [t for t in touches if k in (t.slave, t.master)]
-        press = tool if k == 0 else 0.0
         stiff = sum(t.stiffness for t in mine)
         if isinstance(s.material, WovenMaterial):
             a = tuple(float(np.diff(line)[0]) for line in s.lines)
             shear = shear_law.largest_tangent(*entered_law(s.material))
-            omega2 = timestep.ply_omega2(
-                shear, s.material.bending_rigidity_Nmm, s.tension, (a[0], a[1]), stiff + press, s.areal_mass
-            )
+            omega2 = timestep.ply_omega2(shear, s.material.bending_rigidity_Nmm, (a[0], a[1]), stiff, s.areal_mass)
         else:
             mu = ogden.initial_shear_modulus(s.material.abaqus_terms)
-            omega2 = timestep.diaphragm_omega2(mu, s.thickness, s.rigidity, s.areal_mass, s.element, stiff, press)
+            omega2 = timestep.diaphragm_omega2(mu, s.thickness, s.rigidity, s.areal_mass, s.element, stiff)
         rates = [timestep.contact_damping(t.damping, t.stiffness, s.areal_mass, s.areal_mass) for t in mine]
-        rate = (2.0 * sum(rates) + (tool_damping if k == 0 else 0.0)) / s.areal_mass
+        rate = 2.0 * sum(rates) / s.areal_mass
         omega = math.sqrt(omega2)
         limits.append(timestep.damped_limit(omega, rate / (2.0 * omega)))
     return SAFETY * min(limits)
 
 
-def drive(
-    bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float, each: Callable[[], None] = lambda: None
-) -> None:
-    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time.
-
-    each: called after every CHUNK of steps.
-    """
+def drive(bench: Bench, sim: Simulation, k: int, target: FloatArray, seconds: float) -> None:
+    """Move the held nodes of sheet k smoothly to their places in `target` (3, n, m), in `seconds` of process time."""
     held = sheet_scalars(bench.model, bench.model.inverse_mass, k) == 0.0
     x, v = bench.x(k), bench.v(k)
     start, dt = x.copy(), bench.model.dt
@@ -253,7 +229,6 @@ def drive(
         aim = start + share * (target - start)
         v[:, held] = ((aim - x) / (CHUNK * dt))[:, held]
         sim.advance(CHUNK)
-        each()
     v[:, held] = 0.0
 
 

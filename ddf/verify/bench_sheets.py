@@ -32,7 +32,6 @@ class Sheet:
     thickness: float
     material: WovenMaterial | HyperelasticMaterial
     rigidity: float = 0.0  # diaphragm: of plate bending [N mm]
-    tension: float = 5.0  # ply: fibre tension that the step is made stable for [N/mm]
 
     @property
     def cells(self) -> FloatArray:

@@ -36,7 +36,7 @@ def _foundation(rigidity_along_x: float) -> float:
 def _stretched(options: Options, element_mm: float, length: float) -> Scene:
     """The rectangle under its tension, all edges held."""
     fabric = fabric_of(options)
-    scene = ply_scene(fabric, (SPAN_MM, length), element_mm, tension_N_mm=2.0 * TENSION_N_MM)
+    scene = ply_scene(fabric, (SPAN_MM, length), element_mm)
     scene = replace(scene, state=copied_state(scene.state))
     x = positions(scene)
     stretch, stiff = 1.0, fabric.membrane_modulus_N_mm[0]

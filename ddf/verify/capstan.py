@@ -1,12 +1,13 @@
-"""A strip of ply drawn round a bar: the capstan law, on the tool and on a held sheet.
+"""A strip drawn round a bar: the capstan law, of a diaphragm on the tool and of a ply on a held sheet.
 
 A strip wrapped by the angle b round a round bar with friction mu slides when its tensions stand as
 
     T2 / T1 = exp(mu b)                                                   (Euler 1762, Eytelwein 1808)
 
 whatever the bar's radius. The strip starts wrapped and slack; its leading end is drawn until the strip is tight, then
-both ends go on at the same speed along their tangents. Tensions are those of the bars in the straight parts,
-E h w ln(l)/l, averaged while several cells pass: a cell is straight, and tensions swing as its nodes come and go.
+both ends go on at the same speed along their tangents. Tensions are those of the ends: what the holder resists of the
+diaphragm, what the solver keeps of the ply's bars. They are averaged while several cells pass: a cell is straight,
+and tensions swing as its nodes come and go.
 The bar is a tool (2 x 2 contact points a cell against a distance field) or a held sheet (nodes against its surface).
 """
 
@@ -17,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ddf.model import sheet_scalars
 from ddf.verify.bench import CHUNK, Bench, assemble
 from ddf.verify.bench_sheets import (
     FloatArray,
@@ -30,15 +32,14 @@ from ddf.verify.bench_sheets import (
     rubber_sheet,
 )
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
-from ddf.verify.scenes import fabric_of
 from ddf.verify.tool_fields import cylinder, gridded
 
 BOUND = 2e-2
 RADIUS, WIDTH, STRAIGHT, ELEMENT = 20.0, 8.0, 16.0, 2.0  # mm
 AXIS = 100.0  # height of a tool's axis above its platform [mm]
-TENSION = 2.0  # of the leading end when the strip is tight [N/mm]
+TENSION = {"tool": 0.5, "layer": 2.0}  # of the leading end when the strip is tight: much above D/R^2 [N/mm]
 SPEED, WAY, JUDGED = 100.0, 5.0, 2.5  # mm/s, mm: way of both ends, and the last part of it that is averaged
-TIGHTEN = 5.0  # speed of the leading end before [mm/s]
+TIGHTEN = {"tool": 40.0, "layer": 5.0}  # speed of the leading end before [mm/s]
 DAMPING = 30.0  # 1/s
 STIFFNESS = 10.0  # N/mm3
 CASES = (
@@ -73,32 +74,36 @@ class Strip:
     start: Sheet
     wrap: float
 
+    def along(self) -> tuple[FloatArray, FloatArray]:
+        """Directions (3,) in which the trailing and the leading straight part run forward."""
+        c, s = math.cos(0.5 * self.wrap), math.sin(0.5 * self.wrap)
+        return np.array([c, 0.0, s]), np.array([c, 0.0, -s])
+
     def tension(self) -> tuple[float, float]:
-        """Mean tensions [N/mm] of the trailing and the leading straight part."""
-        x, record = self.bench.x(self.sheet), self.bench.model.sheets[self.sheet]
-        stretch = np.linalg.norm(np.diff(x, axis=1), axis=0) / record["a1"]
-        share = np.ones(stretch.shape[1])
-        share[[0, -1]] = 0.5
-        t = record["eh1"] * (np.log(stretch) / stretch) @ share / share.sum()
-        return float(t[:3].mean()), float(t[-3:].mean())
+        """Tensions [N/mm] of the trailing and the leading end."""
+        f, fibres = self.bench.f(self.sheet), sheet_scalars(self.bench.model, self.bench.state.tension1, self.sheet)
+        trailing, leading = self.along()
+        first = float(trailing @ f[:, 0].sum(axis=1) + fibres[0].sum())
+        last = float(-leading @ f[:, -1].sum(axis=1) + fibres[-2].sum())
+        return first / WIDTH, last / WIDTH
 
     def go(self, trailing: float, leading: float) -> None:
         """Let the ends go at these speeds [mm/s] along their tangents."""
-        v, q = self.bench.v(self.sheet), 0.5 * self.wrap
-        along = np.array([math.cos(q), 0.0, math.sin(q)]).reshape(3, 1)
-        v[:, 0], v[:, -1] = trailing * along, leading * along * np.array([1.0, 1.0, -1.0]).reshape(3, 1)
+        v = self.bench.v(self.sheet)
+        for row, speed, along in zip((0, -1), (trailing, leading), self.along(), strict=True):
+            v[:, row] = speed * along[:, None]
 
 
 def make_strip(options: Options, kind: str, degrees: float, friction: float) -> Strip:
-    """A slack strip round a `tool` or a `layer`."""
+    """A slack strip round a `tool` (of diaphragm) or a `layer` (of ply)."""
     wrap, element = math.radians(degrees), options.element_mm or ELEMENT
-    half = 0.5 * fabric_of(options).thickness_mm
-    radius = RADIUS + half
-    length = radius * wrap + 2.0 * STRAIGHT + WAY
+    length = RADIUS * wrap + 2.0 * STRAIGHT + WAY
     lines = (even_line(length, element, -0.5 * WAY), even_line(WIDTH, element))  # more of it on the trailing side
-    strip = fabric_sheet(options, lines, edges(lines, "left", "right"))
+    make = rubber_sheet if kind == "tool" else fabric_sheet
+    strip = make(options, lines, edges(lines, "left", "right"))
+    half = 0.5 * strip.thickness
     if kind == "tool":
-        strip = replace(strip, start=_surface(lines, radius, wrap))
+        strip = replace(strip, start=_surface(lines, RADIUS + half, wrap))
         reach = RADIUS + 6.0
         corners = (-reach, -WIDTH, AXIS - reach), (reach, WIDTH, AXIS + reach)
         field = gridded(cylinder(RADIUS, AXIS), *corners, spacing=0.5)
@@ -116,8 +121,8 @@ def draw(options: Options, kind: str, degrees: float, friction: float) -> tuple[
     """Ways [mm] after the strip is tight, and tensions of both ends [N/mm]."""
     strip = make_strip(options, kind, degrees, friction)
     sim = strip.bench.simulation(options.threads)
-    strip.go(0.0, TIGHTEN)
-    while strip.tension()[1] < TENSION and sim.time < 1.0:
+    strip.go(0.0, TIGHTEN[kind])
+    while strip.tension()[1] < TENSION[kind] and sim.time < 1.0:
         sim.advance(CHUNK)
     strip.go(SPEED, SPEED)
     start, looks = sim.time, []
@@ -147,4 +152,4 @@ def solve(options: Options) -> Answer:
     return Answer(tuple(checks), Figure("way of the ends [mm]", "T2 / T1", tuple(curves)), table)
 
 
-PROBLEM = Problem("capstan", "Strip of ply drawn round a bar", "capstan law of Euler and Eytelwein", solve)
+PROBLEM = Problem("capstan", "Strip drawn round a bar", "capstan law of Euler and Eytelwein", solve)

@@ -10,10 +10,8 @@ turned by 45 degrees to it, is drawn over both by its frame until the ply lies o
 is why the comparison ends at u v = 0.8); there is no friction anywhere.
 
 A net on a sphere is whatever its two generators are, and without friction only the symmetry of the load keeps them
-great circles: a diaphragm that draws the ply's edges in puts fibres under slight compression, which bows the
-generators out sideways, by tens of degrees of shear within 0.03 s once rounding errors have grown. So the state is
-made mirror-symmetric every few steps, which is what a quarter model with symmetry planes does. The remaining
-difference is that of fabric and net: chords of the elements for arcs, shear stiffness, and the corners' lift.
+great circles. The remaining difference is that of fabric and net: chords of the elements for arcs, shear stiffness,
+and the corners' lift.
 """
 
 from __future__ import annotations
@@ -84,29 +82,15 @@ def _scene(options: Options, element: float) -> tuple[Bench, Sheet]:
     return bench, ply
 
 
-def _make_symmetric(bench: Bench) -> None:
-    """Mean of the state and its mirror images in x = 0 and y = 0; the diaphragm's grid lies at 45 degrees."""
-    for ply, rubber in ((bench.x(0), bench.x(1)), (bench.v(0), bench.v(1))):
-        for axis in (0, 1):
-            image = np.flip(ply, axis + 1).copy()
-            image[axis] *= -1.0
-            ply[:] = 0.5 * (ply + image)
-            image = rubber.transpose(0, 2, 1)
-            image = (image if axis == 0 else image[:, ::-1, ::-1]).copy()
-            image[axis] *= -1.0
-            rubber[:] = 0.5 * (rubber + image)
-
-
 def press(options: Options, element: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Places u v, shear angle [deg] and height above the ball [mm] of every cell of the pressed ply."""
     bench, ply = _scene(options, element)
     sim = bench.simulation(options.threads)
     target = bench.x(1).copy()
     target[2] -= DROP
-    drive(bench, sim, 1, target, DRAW, lambda: _make_symmetric(bench))
+    drive(bench, sim, 1, target, DRAW)
     while sim.time < DRAW + REST:
         sim.advance(CHUNK)
-        _make_symmetric(bench)
     sim.close()
     x = bench.x(0)
     u, v = (0.5 * (line[1:] + line[:-1]) / RADIUS for line in ply.lines)

@@ -21,7 +21,7 @@ import numpy as np
 from ddf.case.schema import WovenMaterial
 from ddf.elements.shear import shear_sine
 from ddf.simulate import Simulation
-from ddf.verify.probe import Probe
+from ddf.verify.probe import acting_forces
 from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem, worst
 from ddf.verify.scenes import damped, entered_law, fabric_of, held, lead, ply_scene, positions, settle
 
@@ -68,7 +68,7 @@ def shear_frame(fabric: WovenMaterial, element_mm: float) -> tuple[FloatArray, F
         sim.state.v[:] = 0.0
         settle(sim, 1e-3, 5.0)
         phi = 0.25 * np.pi - 0.5 * angle
-        work = -np.sum(Probe(scene).forces()[:, edge] * _turned(start[:, edge], angle)[1])
+        work = -np.sum(acting_forces(scene)[:, edge] * _turned(start[:, edge], angle)[1])
         forces.append(work / (SIDE_MM * np.sin(phi)) / (2.0 * np.cos(phi) * SIDE_MM))
         uneven.append(np.rad2deg(np.abs(np.arcsin(shear_sine(positions(scene))) - angle).max()))
     return np.array(forces), np.array(uneven)

@@ -1,4 +1,7 @@
-"""Forces and stiffness of a scene as its own step gives them: one step from rest, so short that nothing moves.
+"""Forces and stiffness of a scene as its own step gives them.
+
+`acting_forces`: those of the last step, fibre tension as the solver keeps it. `Probe`: those of any positions, by one
+step from rest, so short that nothing moves.
 
 With a unit mass at every node, v = dt f after a step from v = 0; fibre tension, which the step takes
 implicitly, is then that of the positions, up to E h w dt^2 / (a m) of itself (4e-10 for the shipped fabric). Forces
@@ -11,16 +14,31 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ddf.elements.tension import pull_kept
+from ddf.model import sheet_scalars, sheet_vectors
 from ddf.scene import Scene
 from ddf.simulate import Simulation
 from ddf.verify.problem import FloatArray
-from ddf.verify.scenes import copied_state, damped, march, positions, velocities
+from ddf.verify.scenes import copied_state, positions, velocities
 
 PROBE_STEP_S = 1e-7
 STENCIL = 5  # nodes this far apart along a grid direction share no force
+
+
+def acting_forces(scene: Scene, k: int = 0) -> FloatArray:
+    """Forces (3, rows, cols) [N] that acted on the nodes of ply k in the last step, fibre tension included.
+
+    On held nodes these are what the holder resists.
+    """
+    model, state = scene.model, scene.state
+    f = sheet_vectors(model, state.f, k).copy()
+    kept = [sheet_scalars(model, pool, k) for pool in (state.tension1, state.tension2)]
+    one, scratch = np.ones(f.shape[1:]), np.zeros((3, f.shape[2]))
+    for i in range(f.shape[1]):
+        pull_kept(positions(scene, k), f, one, *kept, 1.0, i, scratch)
+    return f
 
 
 class Probe:
@@ -70,25 +88,6 @@ class Probe:
         entries = (np.concatenate(values), (np.concatenate(rows), np.maximum(np.concatenate(columns), 0)))
         matrix = csr_array(entries, shape=(len(components) * size, len(components) * size))
         return (matrix + matrix.T) / 2
-
-
-def mean_force(scene: Scene, mask: NDArray[np.bool_], steps: int = 40) -> FloatArray:
-    """Mean force (3,) [N] that the sheet exerts on its held nodes (mask) over an even number of the scene's steps.
-
-    The nodes are let go in a copy of the scene with a mass so large that they stay; their momentum is the
-    impulse of the forces. Where fibres are not at right angles the two families' implicit steps answer the other
-    forces in turn, and a sheet at rest goes to and fro by dt^2 f/m from step to step: tension read off positions
-    is then off, the impulses of a pair of steps are not.
-    """
-    model, large = scene.model, 1e6
-    place = int(model.sheets[0]["node"]) + np.flatnonzero(mask)
-    inverse = model.inverse_mass.copy()
-    inverse[place] = 1.0 / large
-    free = damped(replace(scene, model=model._replace(inverse_mass=inverse), state=copied_state(scene.state)), 0.0)
-    v = velocities(free)
-    v[:, mask] = 0.0
-    march(Simulation(free), steps)
-    return large * v[:, mask].sum(axis=1) / (steps * model.dt)
 
 
 def _nearest(number: np.ndarray, shift: tuple[int, ...]) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -61,6 +62,22 @@ def checks_csv(answers: Iterable[tuple[str, Answer]]) -> str:
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()
+
+
+def worst_table(answers: Iterable[tuple[str, Answer]]) -> str:
+    """Markdown: of all judged checks of a problem that share unit and bound, the one with the largest error."""
+    lines = ["| problem | checks | the worst of them | error | bound | |", "|---|---|---|---|---|---|"]
+    for name, answer in answers:
+        groups: dict[tuple[str, float, bool], list[Check]] = {}
+        for check in answer.checks:
+            if check.bound is not None:
+                groups.setdefault((check.unit, check.bound, check.relative), []).append(check)
+        for group in groups.values():
+            top = max(group, key=lambda check: check.error if math.isfinite(check.error) else math.inf)
+            quantity, unit, _, _, error, bound, verdict = check_text(top)
+            unit = "" if top.relative or unit in ("1", "-") else f" {unit}"
+            lines.append(f"| {name} | {len(group)} | {quantity} | {error}{unit} | {bound}{unit} | {verdict} |")
+    return "\n".join(lines) + "\n"
 
 
 def columns_csv(table: Mapping[str, FloatArray]) -> str:

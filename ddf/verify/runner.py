@@ -13,7 +13,7 @@ from ddf.output.figures import figure_bytes
 from ddf.output.folder import RunFolder
 from ddf.provenance import provenance
 from ddf.verify.problem import Answer, Options, Problem
-from ddf.verify.report import check_row, checks_csv, columns_csv, draw_answer
+from ddf.verify.report import check_row, checks_csv, columns_csv, draw_answer, worst_table
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def with_case_materials(options: Options, file: Path) -> Options:
 def solve_all(
     problems: Sequence[Problem], options: Options, folder: Path, announce: Callable[[Problem], None] = lambda _: None
 ) -> Iterator[Outcome]:
-    """Solve each problem, write NAME.csv and NAME.png, and after the last results.csv and results.json.
+    """Solve each problem, write NAME.csv and NAME.png, and after the last results.csv, results.md and results.json.
 
     A DdfError of one problem is its outcome; the others go on. announce: called with a problem before it is solved.
     """
@@ -63,7 +63,9 @@ def solve_all(
 
 
 def _write_results(out: RunFolder, outcomes: Sequence[Outcome], options: Options) -> None:
-    out.write_text("results.csv", checks_csv([(o.problem.name, o.answer) for o in outcomes if o.answer is not None]))
+    answers = [(o.problem.name, o.answer) for o in outcomes if o.answer is not None]
+    out.write_text("results.csv", checks_csv(answers))
+    out.write_text("results.md", worst_table(answers))
     results = [
         {
             "problem": o.problem.name,

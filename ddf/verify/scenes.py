@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ddf.build import build_scene
+from ddf.build import build_scene, state_at_rest
 from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
@@ -18,7 +18,7 @@ from ddf.dynamics import timestep
 from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
-from ddf.model import LEDGER, SPRINGS, Model, State, sheet_vectors
+from ddf.model import Model, State, sheet_vectors
 from ddf.scene import Scene
 from ddf.simulate import Simulation
 from ddf.verify.problem import FloatArray, Options
@@ -75,22 +75,15 @@ def case_scene(
 
 
 def ply_scene(
-    fabric: WovenMaterial,
-    size_mm: Sequence[float],
-    element_mm: float,
-    orientation_deg: float = 0.0,
-    tension_N_mm: float = 0.1,
+    fabric: WovenMaterial, size_mm: Sequence[float], element_mm: float, orientation_deg: float = 0.0
 ) -> Scene:
-    """A rectangular ply of that size about the origin, in the plane z = 0, free and at rest.
-
-    tension_N_mm: tension of the fibres across which the explicit step stays stable. No damping, no gravity.
-    """
+    """A rectangular ply of that size about the origin, in the plane z = 0, free, at rest, undamped, without gravity."""
     whole = case_scene(fabric, size_mm, element_mm, ply={"orientation_deg": orientation_deg})
     scene = damped(alone(whole, 1), 0.0)
     sheet = scene.model.sheets[0]
     tangent = shear_law.largest_tangent(*entered_law(fabric))
     spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
-    omega2 = timestep.ply_omega2(tangent, rigidity, tension_N_mm, spacing, 0.0, areal_mass(fabric))
+    omega2 = timestep.ply_omega2(tangent, rigidity, spacing, 0.0, areal_mass(fabric))
     limit = 2.0 / math.sqrt(omega2)
     safe = scene.case.solver.step_safety * limit
     sheet_vectors(scene.model, scene.state.x, 0)[2] = 0.0
@@ -99,7 +92,7 @@ def ply_scene(
 
 def alone(scene: Scene, k: int) -> Scene:
     """The scene with sheet k only: no other sheet, no contact, no tool."""
-    model, state = scene.model, scene.state
+    model = scene.model
     sheet = model.sheets[k]
     n, first, rows = int(sheet["rows"] * sheet["cols"]), int(sheet["node"]), int(sheet["rows"])
     blocks = model.blocks[model.blocks["sheet"] == k].copy()
@@ -116,12 +109,8 @@ def alone(scene: Scene, k: int) -> Scene:
         centre=model.centre[2 * first : 2 * (first + n)].copy(),
         exposed=model.exposed[:0], tool_sheet=-1,
     )  # fmt: skip
-    x = state.x[3 * first : 3 * (first + n)].copy()
-    own = state._replace(
-        x=x, v=np.zeros_like(x), f=np.zeros_like(x), place=state.place[:0], anchor=state.anchor[:0],
-        ledger=np.zeros((blocks.size, LEDGER)), springs=np.zeros((blocks.size, SPRINGS)), clock=np.zeros(2),
-    )  # fmt: skip
-    return replace(scene, model=small, state=own, sheets=(scene.sheets[k],))
+    x = scene.state.x[3 * first : 3 * (first + n)].copy()
+    return replace(scene, model=small, state=state_at_rest(small, x, np.zeros(0)), sheets=(scene.sheets[k],))
 
 
 def copied_state(state: State) -> State:
@@ -181,9 +170,9 @@ def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: in
 def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
     """Advance until nothing in the ply goes anywhere faster than a speed; returns the time it took [s].
 
-    The speed is that between two looks an even number of steps apart: a sheared ply at rest goes to and fro from
-    step to step, see `probe.mean_force`. Raises UnstableError where it has not come to rest after `longest_s`, or is
-    no number any more.
+    The speed is that between two looks an even number of steps apart: the families are corrected in turn, and a
+    sheared ply at rest goes to and fro by what is left of its tension, (1 - KEEP) sin^4 of the shear angle of it (see
+    `elements.tension`). Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
     """
     start, x = sim.time, positions(sim.scene)
     while True:

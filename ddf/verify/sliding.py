@@ -3,8 +3,8 @@
 A sheet lies on a held sheet under gravity g; its front line of nodes is drawn over it at a steady speed. Whatever the
 sheet's stretch, the rest of it weighs N = sum m g on the other one, the draw is  F = mu N  and the heat of a way s is
 F s (Coulomb). The draw on a diaphragm is what the holder of its front line resists; on a ply it is the tension of the
-first bars, E h w ln(l)/l. The heat is the solver's own ledger of friction. Gravity is a hundredfold, so that the
-pressure is that of a process rather than that of a weight.
+first bars, as the solver keeps it. The heat is the solver's own ledger of friction. Gravity is a hundredfold, so that
+the pressure is that of a process rather than that of a weight.
 Mass damping quiets the start and has faded before the half of the way that is judged.
 """
 
@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddf.loads.path import LoadPath
-from ddf.model import FRICTION
+from ddf.model import FRICTION, sheet_scalars
 from ddf.verify.bench import Bench, assemble
 from ddf.verify.bench_sheets import (
     FloatArray,
@@ -51,14 +51,11 @@ def _sheets(options: Options, kind: str) -> tuple[Sheet, Sheet]:
     return bed, drawn
 
 
-def _draw(bench: Bench, sheet: Sheet, kind: str) -> float:
+def _draw(bench: Bench, kind: str) -> float:
     """Force of the front line on the sheet [N]."""
     if kind == "diaphragm":
         return float(-bench.f(1)[0, -1].sum())
-    record = bench.model.sheets[1]
-    bars = np.linalg.norm(bench.x(1)[:, -1] - bench.x(1)[:, -2], axis=0) / record["a1"]
-    width = bench.model.bar1.reshape(-1)[record["node"] :][: sheet.held.size].reshape(sheet.held.shape)[-2]
-    return float(np.sum(record["eh1"] * width * np.log(bars) / bars))
+    return float(sheet_scalars(bench.model, bench.state.tension1, 1)[-2].sum())
 
 
 def _fading_damping() -> LoadPath:
@@ -80,7 +77,7 @@ def pull(options: Options, kind: str, friction: float) -> tuple[float, FloatArra
     for _ in range(LOOKS):
         sim.advance(steps)
         way = float(bench.x(1)[0, -1, 0] - drawn.start[0, -1, 0])
-        looks.append((way, _draw(bench, drawn, kind), bench.state.ledger[:, FRICTION].sum()))
+        looks.append((way, _draw(bench, kind), bench.state.ledger[:, FRICTION].sum()))
     sim.close()
     way_mm, force, heat = np.array(looks).T
     return mass * HEAVY * GRAVITY, way_mm, force, heat

@@ -72,6 +72,11 @@ def test_a_miss_and_an_error_exit_with_4_after_all_others(run, tmp_path):
     with (tmp_path / "out/results.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     assert [row["problem"] for row in rows] == ["far", "near"]
+    worst = (tmp_path / "out/results.md").read_text().splitlines()
+    assert worst[2:] == [
+        "| far | 1 | force | 10 % | 1 % | MISS |",
+        "| near | 1 | force | 0.1 % | 1 % | pass |",
+    ]
     assert float(rows[0]["error"]) == pytest.approx(0.1)
 
 
