@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 
-DEFAULT_MASS_SCALING = 20.0
+DEFAULT_MASS_SCALING = 8.0
 
 
 class Solver(Section):
@@ -18,7 +18,7 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass (inferred); left out without target_step_s: 20. "
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 8. "
         "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
@@ -28,10 +28,10 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     diaphragm_mass_scaling: float = Field(
-        default=2.0, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
+        default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
-    step_safety: float = Field(default=0.9, gt=0, le=1, description="Step as a fraction of the stable one.")
+    step_safety: float = Field(default=0.85, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
@@ -39,7 +39,7 @@ class Solver(Section):
         default=1.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=30.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+        default=15.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
     threads: int | None = Field(
