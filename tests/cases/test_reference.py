@@ -32,6 +32,8 @@ def test_run_settles(formed):
     assert checks["kinetic over internal energy"]["ok"]
     assert checks["deepest penetration of the tool"]["value"] < 0.5  # 5 mm elements over 5 mm fillets
     assert checks["gap over the tool's apex"]["ok"]
+    assert checks["energy balance error"]["ok"]
+    assert checks["largest fibre strain"]["ok"]
 
 
 def test_outline(formed, reference):
