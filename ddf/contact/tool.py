@@ -1,10 +1,10 @@
 """Contact of a diaphragm with the rigid tool and the platform around it, implicit in time.
 
-Every node is a contact point. So that no ridge or corner passes between nodes, a cell whose nodes are near the tool
-and see normals that differ by more than 14 degrees carries 2 x 2 more at its quarters. A point at p (tool frame: it
-moves with the tool) with signed distance d(p) and gradient n is pushed by
+The platform is met by the nodes (d = z, n = e_z), the tool by 2 x 2 points a cell at its quarters, so that no ridge
+passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and gradient n is
+pushed by
 
-    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset,   likewise by the platform (d = z, n = e_z),
+    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset,
 
 never pulled, and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the node's
 area or a quarter of the cell's; dt K v is the spring's force at the place that the point is moving to. The force goes
@@ -19,8 +19,7 @@ leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the ten
 forces is dissipation, booked with the mid-step velocity.
 
 The last row of a block of cells belongs to the next block: it goes to `carry`, which is added later in a fixed
-order. A node found far from the tool does not look at it for as many steps as it needs at the given reach to come
-near; it looks at the platform all the time.
+order. A cell found far from the tool does not look at it for as many steps as it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -36,7 +35,6 @@ LONGEST_SLEEP = 16
 
 #: columns of `press`: tensor J (xx, yy, zz, xy, xz, yz) [tonne] and viscous force of the tool [N] on each node
 PRESS = 9
-SMOOTH = 0.97  # least cosine of two normals across a cell that needs no points of its own
 CARRY = 3 + PRESS  # force and `press` of the row that belongs to the next block
 
 
@@ -49,56 +47,35 @@ def _held(p, anchor, nx, ny, nz):
 
 
 @njit(**FAST)
-def _point(p, v, field, offset, k, c, mu, dt, anchor, out, give):
-    """Force, tensor and viscous force of one contact point, into give (12,); returns its distance.
+def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
+    """Force, tensor and viscous force of one contact point, into give (12,), the order of CARRY; returns its gap.
 
-    p, v: position and velocity relative to the tool; field: distance and normal there from `sample`; k [N/mm],
-    c [N s/mm]; updates its anchor and the energies out (4,): normal spring, tangential spring, friction loss, loss
-    where contact begins or ends [N mm].
+    p, v: position and velocity relative to the tool; d, n: distance and normal there; k [N/mm], c [N s/mm]; updates
+    its anchor and the energies out (4,): normal spring, tangential spring, friction loss, loss where contact begins
+    or ends [N mm].
     """
-    px, py, pz = p
-    d1, nx, ny, nz = field
-    near = min(d1, pz) - offset
+    near = d - offset
+    nx, ny, nz = n
+    rate = nx * v[0] + ny * v[1] + nz * v[2]
     if near >= 0.0:
         if anchor[0] < FREE:
-            rate = v[2] if pz < d1 else nx * v[0] + ny * v[1] + nz * v[2]
             before = max(0.0, dt * rate - near)
             out[2] += 0.5 * TANGENTIAL * k * _held(p, anchor, nx, ny, nz)
             out[3] -= 0.5 * k * before * (dt * rate - before)
         anchor[0] = FREE
         return near
+    px, py, pz = p
     c += dt * k
     inertia = dt * c
-    fx = fy = fz = normal = 0.0
-    bx = by = bz = 0.0  # viscous part
-    jxx = jyy = jzz = jxy = jxz = jyz = 0.0
-    if d1 < offset:
-        spring = k * (offset - d1)
-        n1 = max(0.0, spring - c * (nx * v[0] + ny * v[1] + nz * v[2]))
-        out[0] += 0.5 * spring * (offset - d1)
-        fx, fy, fz, normal = n1 * nx, n1 * ny, n1 * nz, n1
-        bx, by, bz = (n1 - spring) * nx, (n1 - spring) * ny, (n1 - spring) * nz
-        if n1 > 0.0:
-            jxx, jyy, jzz = inertia * nx * nx, inertia * ny * ny, inertia * nz * nz
-            jxy, jxz, jyz = inertia * nx * ny, inertia * nx * nz, inertia * ny * nz
-    if pz < offset:
-        spring = k * (offset - pz)
-        n2 = max(0.0, spring - c * v[2])
-        out[0] += 0.5 * spring * (offset - pz)
-        fz += n2
-        bz += n2 - spring
-        normal += n2
-        if n2 > 0.0:
-            jzz += inertia
-        if pz < d1:
-            nx, ny, nz = 0.0, 0.0, 1.0
+    spring = -k * near
+    normal = max(0.0, spring - c * rate)
+    out[0] -= 0.5 * spring * near
     if anchor[0] >= FREE:
         anchor[0], anchor[1], anchor[2] = px, py, pz
-        out[3] += 0.5 * k * near * (dt * (nx * v[0] + ny * v[1] + nz * v[2]) - near)
+        out[3] += 0.5 * k * near * (dt * rate - near)
     sx, sy, sz = px - anchor[0], py - anchor[1], pz - anchor[2]
     s = sx * nx + sy * ny + sz * nz
     sx, sy, sz = sx - s * nx, sy - s * ny, sz - s * nz
-    rate = nx * v[0] + ny * v[1] + nz * v[2]
     vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
     k, c = TANGENTIAL * k, TANGENTIAL * c
     tx, ty, tz = -k * sx - c * vx, -k * sy - c * vy, -k * sz - c * vz
@@ -114,15 +91,17 @@ def _point(p, v, field, offset, k, c, mu, dt, anchor, out, give):
     before = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
     out[2] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
-    inertia *= TANGENTIAL * share
-    give[0], give[1], give[2] = fx + tx, fy + ty, fz + tz
-    give[3], give[4], give[5] = (
-        jxx + inertia * (1.0 - nx * nx),
-        jyy + inertia * (1.0 - ny * ny),
-        jzz + inertia * (1.0 - nz * nz),
+    along = inertia * TANGENTIAL * share
+    across = (inertia if normal > 0.0 else 0.0) - along
+    viscous = normal - spring
+    give[0], give[1], give[2] = normal * nx + tx, normal * ny + ty, normal * nz + tz
+    give[3], give[4], give[5] = along + across * nx * nx, along + across * ny * ny, along + across * nz * nz
+    give[6], give[7], give[8] = across * nx * ny, across * nx * nz, across * ny * nz
+    give[9], give[10], give[11] = (
+        viscous * nx + tx + held * sx,
+        viscous * ny + ty + held * sy,
+        viscous * nz + tz + held * sz,
     )
-    give[6], give[7], give[8] = jxy - inertia * nx * ny, jxz - inertia * nx * nz, jyz - inertia * ny * nz
-    give[9], give[10], give[11] = bx + tx + held * sx, by + ty + held * sy, bz + tz + held * sz
     return near
 
 
@@ -135,105 +114,82 @@ def _put(f, press, i, j, weight, give):
         press[i, j, c] += weight * give[3 + c]
 
 
-@njit(inline="always")
-def _note(seen, j, field, pz):
-    """Keep for a node the distance to the nearer of tool and platform, and its normal; seen (4, m)."""
-    if pz < field[0]:
-        seen[0, j], seen[1, j], seen[2, j], seen[3, j] = pz, 0.0, 0.0, 1.0
-    else:
-        seen[0, j], seen[1, j], seen[2, j], seen[3, j] = field
-
-
-@njit(inline="always")
-def _needs_points(near, far, j, reach):
-    """Whether the cell between nodes j, j+1 of two rows is near the tool where it is not smooth."""
-    least = min(min(near[0, j], near[0, j + 1]), min(far[0, j], far[0, j + 1]))
-    one = near[1, j] * far[1, j + 1] + near[2, j] * far[2, j + 1] + near[3, j] * far[3, j + 1]
-    two = near[1, j + 1] * far[1, j] + near[2, j + 1] * far[2, j] + near[3, j + 1] * far[3, j]
-    return least < reach and min(one, two) < SMOOTH
-
-
 @njit(**FAST)
 def tool_forces(
     x, v, f, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors, sleep,
-    low, high, out, give, seen,
+    low, high, out, give,
 ):  # fmt: skip
-    """Add the forces of the nodes of rows low..high-1 and of the cells between them and the next row.
+    """Add the forces of the nodes and cells of rows low..high-1; returns the tool's work [N mm], and if carry is used.
 
-    Returns the tool's work [N mm] and whether carry is used. x, v, f (3, n, m); press (n, m, 9), carry (m + 2, 12):
-    see PRESS, CARRY; pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell
-    sizes [mm]; law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a
-    point can go in a step [mm]; anchors (n, m, 5, 3): of the node, of the cell's points; sleep (n, m) int16; out (4,)
-    as in `_point`; give (12,), seen (2, 4, m) scratch.
+    x, v, f (3, n, m); press (n, m, 9), carry (m + 2, 12): see PRESS, CARRY; pressed (n,) bool: rows of press in use;
+    area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping, friction);
+    motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm]; anchors (n, m, 5, 3): of the
+    node, of the cell's points; sleep (n, m) int16 of the cells; out (4,) as in `_point`; give (12,) scratch.
     """
     offset, stiffness, damping, mu = law
     z, speed = motion
     n, m = x.shape[1], x.shape[2]
     work = 0.0
     carried = False
-    for i in range(low, min(high + 1, n)):
-        here = seen[i % 2]
+    for i in range(low, high):
         for j in range(m):
+            if x[2, i, j] - z >= offset and anchors[i, j, 0, 0] >= FREE:
+                continue
             p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
-            if i == high:  # of the next block: seen here for the cells of the row before
-                _note(here, j, sample(tool, origin, spacing, p[0], p[1], p[2]), p[2])
-                continue
-            field = (1.0e3, 0.0, 0.0, 1.0)
-            if sleep[i, j] > 0:
-                sleep[i, j] -= 1
-            else:
-                field = sample(tool, origin, spacing, p[0], p[1], p[2])
-                if field[0] - offset > reach:
-                    sleep[i, j] = min(LONGEST_SLEEP, int((field[0] - offset) / reach) - 1)
-            _note(here, j, field, p[2])
-            if here[0, j] >= offset and anchors[i, j, 0, 0] >= FREE:
-                continue
-            a = area[i, j]
             u = (v[0, i, j], v[1, i, j], v[2, i, j] - speed)
-            near = _point(p, u, field, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give)
+            a, up = area[i, j], (0.0, 0.0, 1.0)
+            near = _point(p, u, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give)
             if near < 0.0:
                 work += give[2] * speed * dt
                 pressed[i] = True
                 _put(f, press, i, j, 1.0, give)
-        if i == low:
-            continue
-        before = seen[(i - 1) % 2]
+        k = i + 1
+        if k == n:
+            break
         for j in range(m - 1):
-            k = i - 1
-            if not _needs_points(before, here, j, offset + 0.5 * (dx[k] + dy[j])):
+            if sleep[i, j] > 0:
+                sleep[i, j] -= 1
                 continue
-            a = 0.25 * dx[k] * dy[j]
+            a = 0.25 * dx[i] * dy[j]
+            nearest = 1.0e3
             for q in range(4):
                 r = 0.25 if q < 2 else 0.75
                 s = 0.25 if q % 2 == 0 else 0.75
                 w00, w10, w01, w11 = (1 - r) * (1 - s), r * (1 - s), (1 - r) * s, r * s
                 p = (
-                    w00 * x[0, k, j] + w10 * x[0, i, j] + w01 * x[0, k, j + 1] + w11 * x[0, i, j + 1],
-                    w00 * x[1, k, j] + w10 * x[1, i, j] + w01 * x[1, k, j + 1] + w11 * x[1, i, j + 1],
-                    w00 * x[2, k, j] + w10 * x[2, i, j] + w01 * x[2, k, j + 1] + w11 * x[2, i, j + 1] - z,
+                    w00 * x[0, i, j] + w10 * x[0, k, j] + w01 * x[0, i, j + 1] + w11 * x[0, k, j + 1],
+                    w00 * x[1, i, j] + w10 * x[1, k, j] + w01 * x[1, i, j + 1] + w11 * x[1, k, j + 1],
+                    w00 * x[2, i, j] + w10 * x[2, k, j] + w01 * x[2, i, j + 1] + w11 * x[2, k, j + 1] - z,
                 )
+                d, nx, ny, nz = sample(tool, origin, spacing, p[0], p[1], p[2])
+                nearest = min(nearest, d - offset)
+                if d >= offset and anchors[i, j, 1 + q, 0] >= FREE:
+                    continue
                 u = (
-                    w00 * v[0, k, j] + w10 * v[0, i, j] + w01 * v[0, k, j + 1] + w11 * v[0, i, j + 1],
-                    w00 * v[1, k, j] + w10 * v[1, i, j] + w01 * v[1, k, j + 1] + w11 * v[1, i, j + 1],
-                    w00 * v[2, k, j] + w10 * v[2, i, j] + w01 * v[2, k, j + 1] + w11 * v[2, i, j + 1] - speed,
+                    w00 * v[0, i, j] + w10 * v[0, k, j] + w01 * v[0, i, j + 1] + w11 * v[0, k, j + 1],
+                    w00 * v[1, i, j] + w10 * v[1, k, j] + w01 * v[1, i, j + 1] + w11 * v[1, k, j + 1],
+                    w00 * v[2, i, j] + w10 * v[2, k, j] + w01 * v[2, i, j + 1] + w11 * v[2, k, j + 1] - speed,
                 )
-                field = sample(tool, origin, spacing, p[0], p[1], p[2])
-                near = _point(p, u, field, offset, stiffness * a, damping * a, mu, dt, anchors[k, j, 1 + q], out, give)
+                near = _point(
+                    p, u, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q], out, give
+                )
                 if near >= 0.0:
                     continue
                 work += give[2] * speed * dt
-                pressed[k] = True
-                _put(f, press, k, j, w00, give)
-                _put(f, press, k, j + 1, w01, give)
-                if i < high:
-                    pressed[i] = True
-                    _put(f, press, i, j, w10, give)
-                    _put(f, press, i, j + 1, w11, give)
+                pressed[i] = True
+                _put(f, press, i, j, w00, give)
+                _put(f, press, i, j + 1, w01, give)
+                if k < high:
+                    pressed[k] = True
+                    _put(f, press, k, j, w10, give)
+                    _put(f, press, k, j + 1, w11, give)
                 else:
                     carried = True
                     for c in range(CARRY):
                         carry[j, c] += w10 * give[c]
                         carry[j + 1, c] += w11 * give[c]
+            if nearest > reach:
+                sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
     return work, carried
 
 

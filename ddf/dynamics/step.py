@@ -74,7 +74,7 @@ class Work(NamedTuple):
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
     give: np.ndarray  # (members, CARRY)
-    sleep: np.ndarray  # (n, m) int16: steps in which a node need not look at the tool
+    sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
     bundles2: np.ndarray  # (k, 3): sheet, first and last+1 row: lines of family 2
@@ -219,7 +219,6 @@ def _tool(model, state, work, member, row, b, dt, reach):
         work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
         state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
-        work.scratch[member, : 8 * sheet.cols].reshape((2, 4, sheet.cols)),
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]

@@ -65,7 +65,7 @@ def case_scene(
     raw: dict[str, Table] = {
         "materials": {"fabric": fabric.model_dump(exclude={"base"})},
         "frame": {"length_mm": frame[0], "width_mm": frame[1]},
-        "diaphragms": {"element_mm": 20.0},
+        "diaphragms": {"element_mm": min(20.0, 0.5 * min(size_mm))},
         "process": {"stages": [{"name": "all", "duration_s": 1.0}]},
         "solver": {"mass_scaling": 1.0},
     }

@@ -116,7 +116,7 @@ class Tool:
             work, _ = tool_forces(
                 x, v, f, self.press, pressed, carry, self.area, self.dx, self.dy,
                 self.values, self.origin, self.spacing, self.law, (z, speed), 1e6, dt, self.anchors, sleep, low, high,
-                self.out, np.zeros(CARRY), np.zeros((2, 4, m)),
+                self.out, np.zeros(CARRY),
             )  # fmt: skip
             self.work += work
             if high < n:
