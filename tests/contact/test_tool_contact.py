@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import touching as t
+from differences import gradient
 
 from ddf.contact.tool import settle_row
 
@@ -13,17 +14,6 @@ def _sheet(rng, height):
     lines = [np.concatenate([[0.0], np.cumsum(d)]) - 3.0 for d in (DX, DY)]
     u, v = np.meshgrid(*lines, indexing="ij")
     return np.array([u, v, np.full_like(u, height)]) + rng.normal(size=(3, *u.shape)) * 0.1
-
-
-def _gradient(energy, x, step=1e-4):
-    g = np.zeros_like(x)
-    for k in np.ndindex(x.shape):
-        y = x.copy()
-        y[k] = x[k] + step
-        up = energy(y)
-        y[k] = x[k] - step
-        g[k] = (up - energy(y)) / (2.0 * step)
-    return g
 
 
 def _sphere(points):
@@ -41,7 +31,7 @@ def test_force_is_the_gradient_of_the_penalty_energy_on_a_plane():
     x[2] += 0.3 - np.tan(np.deg2rad(25.0)) * x[0] + z
     f = tool.forces(x, z=z, seam=2)
     assert (np.abs(f[2]) > 0).all()
-    expected = -_gradient(lambda y: (tool.forces(y, z=z), tool.out[0])[1], x)
+    expected = -gradient(lambda y: (tool.forces(y, z=z), tool.out[0])[1], x)
     away = tool.forces(x, z=z)
     # the field is in single precision: relative 1e-5
     assert np.abs(away - expected).max() < 1e-5 * np.abs(expected).max()
@@ -57,7 +47,7 @@ def test_force_is_the_gradient_on_the_platform_and_in_the_corner():
     energy = tool.out[0]
     assert f[0].sum() > 0.1 * f[2].sum()  # the plane pushes as well
     assert energy > 0.0
-    expected = -_gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
+    expected = -gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
     assert np.abs(f - expected).max() < 1e-5 * np.abs(expected).max()
 
 
@@ -65,7 +55,7 @@ def test_force_on_a_sphere_is_nearly_the_gradient():
     tool = t.Tool(_sphere, (DX, DY))
     x = _sheet(np.random.default_rng(2), 5.3)
     f = tool.forces(x, z=-0.0)
-    expected = -_gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
+    expected = -gradient(lambda y: (tool.forces(y), tool.out[0])[1], x)
     assert np.abs(f - expected).max() < 0.05 * np.abs(expected).max()  # h^2 k of the 1 mm grid
 
 

@@ -193,19 +193,6 @@ def volume(x):
     return cone_volume(x, 0, x.shape[1])
 
 
-def gradient(energy, x, step=1e-4):
-    """Central differences of fourth order."""
-    g = np.zeros_like(x)
-    for k in np.ndindex(x.shape):
-        y = x.copy()
-        e = []
-        for shift in (1.0, -1.0, 2.0, -2.0):
-            y[k] = x[k] + shift * step
-            e.append(energy(y))
-        g[k] = (8.0 * (e[0] - e[1]) - (e[2] - e[3])) / (12.0 * step)
-    return g
-
-
 def relative(a, b):
     """Largest difference over the largest value."""
     return np.abs(a - b).max() / np.abs(b).max()

@@ -3,6 +3,7 @@
 import numpy as np
 import patches as p
 import pytest
+from differences import gradient
 
 SEAM = 3
 
@@ -20,7 +21,7 @@ def test_shear_is_the_gradient_of_its_energy(cut_ply, law):
     x = x.copy()
     x[0] += 0.35 * x[1]  # a mean shear angle of 19 degrees: past the laws' knee
     table = p.table_of(law)
-    expected = -p.gradient(lambda y: p.ply_shear_energy(patch, y, table), x, 1e-5)
+    expected = -gradient(lambda y: p.ply_shear_energy(patch, y, table), x, 1e-5)
     assert p.relative(p.ply_shear(patch, x, table, SEAM), expected) < 1e-6
 
 
@@ -29,7 +30,7 @@ def test_shear_of_opposite_sign_is_the_gradient_too(cut_ply):
     x = x.copy()
     x[0] -= 0.8 * x[1]
     table = p.table_of("monotone")
-    expected = -p.gradient(lambda y: p.ply_shear_energy(patch, y, table), x, 1e-5)
+    expected = -gradient(lambda y: p.ply_shear_energy(patch, y, table), x, 1e-5)
     assert p.relative(p.ply_shear(patch, x, table, SEAM), expected) < 1e-6
 
 
@@ -37,7 +38,7 @@ def test_shear_of_opposite_sign_is_the_gradient_too(cut_ply):
 def test_bending_is_the_gradient_of_its_energy(cut_ply, in_plane):
     patch, x = cut_ply
     patch.sheet["bend_in_plane"] = in_plane
-    expected = -p.gradient(lambda y: p.ply_bending_energy(patch, y), x)
+    expected = -gradient(lambda y: p.ply_bending_energy(patch, y), x)
     assert p.relative(p.ply_bending(patch, x, SEAM), expected) < 1e-8
 
 
@@ -51,7 +52,7 @@ def test_in_plane_rigidity_adds_to_the_bending_energy(cut_ply):
 def test_tension_is_the_gradient_of_its_energy(cut_ply):
     patch, _ = cut_ply
     x = patch.rest + np.random.default_rng(5).normal(size=patch.rest.shape) * 0.005
-    expected = -p.gradient(lambda y: p.ply_tension_energy(patch, y), x)
+    expected = -gradient(lambda y: p.ply_tension_energy(patch, y), x)
     assert p.relative(p.ply_tension(patch, x), expected) < 1e-7
 
 
@@ -77,7 +78,7 @@ def diaphragm(request):
 
 def test_rubber_is_the_gradient_of_its_energy(diaphragm):
     patch, x = diaphragm
-    expected = -p.gradient(lambda y: sum(p.rubber_energies(patch, y)), x)
+    expected = -gradient(lambda y: sum(p.rubber_energies(patch, y)), x)
     assert p.relative(p.rubber(patch, x, seam=SEAM), expected) < 1e-8
 
 
@@ -90,7 +91,7 @@ def test_each_part_of_the_rubber_is_the_gradient_of_its_energy(diaphragm, part, 
     for key, value in kept.items():
         patch.sheet[key] = value
     force = p.rubber(patch, x, seam=SEAM)
-    expected = -p.gradient(lambda y: p.rubber_energies(patch, y)[part], x)
+    expected = -gradient(lambda y: p.rubber_energies(patch, y)[part], x)
     assert p.relative(force if part == 0 else force - membrane, expected) < 1e-7
 
 
@@ -98,7 +99,7 @@ def test_pressure_is_the_gradient_of_the_swept_volume_inside(diaphragm):
     patch, x = diaphragm
     pressure = 0.1
     force = p.rubber(patch, x, pressure, SEAM) - p.rubber(patch, x, seam=SEAM)
-    expected = pressure * p.gradient(p.volume, x)
+    expected = pressure * gradient(p.volume, x)
     inside = np.s_[:, 1:-1, 1:-1]
     assert p.relative(force[inside], expected[inside]) < 1e-9
 
@@ -113,7 +114,7 @@ def test_pressure_on_a_closed_outline_has_the_resultant_of_its_flat_area():
 
 def test_plate_is_the_gradient_of_its_energy(diaphragm):
     patch, x = diaphragm
-    expected = -p.gradient(lambda y: p.plate_bending_energy(patch, y), x)
+    expected = -gradient(lambda y: p.plate_bending_energy(patch, y), x)
     assert p.relative(p.plate(patch, x, SEAM), expected) < 1e-9
 
 

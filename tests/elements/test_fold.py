@@ -3,6 +3,7 @@
 import numpy as np
 import patches as p
 import pytest
+from differences import gradient
 
 from ddf.elements.fold import fold_energy, fold_forces, fold_lattice_energy, fold_lattice_forces, least_chord
 
@@ -12,17 +13,6 @@ def _folded(rng, n=7, m=8):
     u, v = np.meshgrid(np.arange(n) * 2.0, np.arange(m) * 2.5, indexing="ij")
     z = 3.0 * (-1.0) ** np.arange(n)[:, None] + 2.0 * (-1.0) ** np.arange(m)[None, :]
     return np.array([0.4 * u, 0.6 * v, z]) + rng.normal(size=(3, n, m)) * 0.1
-
-
-def _gradient(energy, x, step=1e-5):
-    g = np.zeros_like(x)
-    for k in np.ndindex(x.shape):
-        y = x.copy()
-        y[k] = x[k] + step
-        up = energy(y)
-        y[k] = x[k] - step
-        g[k] = (up - energy(y)) / (2.0 * step)
-    return g
 
 
 def test_forces_are_the_gradient_and_keep_momenta():
@@ -35,7 +25,7 @@ def test_forces_are_the_gradient_and_keep_momenta():
     energy, count = fold_energy(x, dx, dy, 5.8, 2.0)
     assert energy > 1.0
     assert count > 20
-    assert np.abs(f + _gradient(lambda y: fold_energy(y, dx, dy, 5.8, 2.0)[0], x)).max() < 1e-6 * np.abs(f).max()
+    assert np.abs(f + gradient(lambda y: fold_energy(y, dx, dy, 5.8, 2.0)[0], x, 1e-5)).max() < 1e-6 * np.abs(f).max()
     points, force = x.reshape(3, -1).T, f.reshape(3, -1).T
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
     assert np.abs(np.cross(points, force).sum(axis=0)).max() < 1e-12 * np.abs(force).sum() * 20.0
@@ -52,8 +42,8 @@ def test_lattice_forces_are_the_gradient():
     energy, count = fold_lattice_energy(x, *args, (2.0, 2.5), 5.8, 1.0)
     assert energy > 0.1
     assert count > 5
-    gradient = _gradient(lambda y: fold_lattice_energy(y, *args, (2.0, 2.5), 5.8, 1.0)[0], x)
-    assert np.abs(f + gradient).max() < 1e-6 * np.abs(f).max()
+    away = gradient(lambda y: fold_lattice_energy(y, *args, (2.0, 2.5), 5.8, 1.0)[0], x, 1e-5)
+    assert np.abs(f + away).max() < 1e-6 * np.abs(f).max()
 
 
 @pytest.mark.parametrize("cell", [1.0, 2.5, 5.0])
