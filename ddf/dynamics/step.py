@@ -1,9 +1,10 @@
-"""One step: every force explicit, fibre tension implicit along the fibre lines.
+"""One step: explicit forces, the tool's implicit at its nodes, fibre tension implicit along the fibre lines.
 
 Step n, of length dt (leapfrog: v lives half a step behind x):
 
-    1  f = shear + bending + diaphragms + pressure + contact + tool  at x_n, v_(n-1/2)     blocks of rows
-    2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+    1  f = gravity + shear + bending + folds + diaphragms + pressure + contact + tool      blocks of rows
+    2  f of the tool's sheet <- m (m + J)^-1 f (`contact.tool`)
+       v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
     3  plies: v and kept tensions corrected along family 1 (`elements.tension`)             fibre lines
     4  plies: the same along family 2                                                       fibre lines
     5, 6  as 3, 4, with the string's step
