@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt
 from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
 from ddf.contact.layers import UNKNOWN
-from ddf.contact.patch import patch_centres
+from ddf.contact.patch import edge_cover, patch_centres
 from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
 from ddf.elements.bending import tangent_weights
@@ -266,7 +266,7 @@ def corner_sum(cells: FloatArray) -> FloatArray:
 
 def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -> dict[str, np.ndarray]:
     """Node pools of the model: masses, areas, bars, cells, triples, spans."""
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
+    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
     spans, firsts, centres, weights, first = [], [], [], [], 0
     for k, s in enumerate(sheets):
@@ -276,12 +276,14 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
         if s["kind"] == PLY:
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
+            values["cover"] = edge_cover(values["cell"])
             span = np.asarray(ply.row_span)
             held, exists = np.zeros((n, m), bool), ply.active
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
             values["area"], values["cell"] = corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
+            values["cover"] = np.ones((n, m))
             span = np.tile([0, m], (n, 1))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False

@@ -116,6 +116,7 @@ class Model(NamedTuple):
     shear_tables: np.ndarray  # (laws, intervals, 5)
     ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
     exposed: np.ndarray  # (P,) bool: slave nodes a pair has to follow
+    cover: np.ndarray  # (N,) share of contact stiffness that a master gives at a node: 0 on a ply's edges
     centre: np.ndarray  # (2 N,) int32: centre of the contact patch around a node
     tool: np.ndarray  # (nx, ny, nz, 4) float32 signed distance and gradient
     tool_origin: np.ndarray  # (3,)

@@ -20,7 +20,9 @@ r x f = r^a S_a x f + d n x f, whether or not the projection has converged. With
 forces lie a gap apart and every contact would be a couple. Slip is kept as the history s^a and not as the way of
 the place from an anchor: in folds as tight as the contact distance places move where nothing slips.
 
-A node whose place lies outside the master's fabric is not in contact. One that is far away rests for as many
+A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge K
+fades to nothing (`cover`, interpolated like the surface): the corner of one ply that lies on the edge of another would
+else be pushed with all of K in one step and with none in the next, at 10 to 30 m/s (seen). One that is far away rests for as many
 steps as it needs at the given reach to come near.
 Forces on the master go to one buffer a block of slave rows; the buffers are summed in a fixed order, so the
 result does not depend on the number of threads.
@@ -56,6 +58,7 @@ STRIDE = np.uint64(4 * CHUNK)
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
     AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip of the friction spring
+    COVER,  # share of the stiffness that the master's edge leaves
     BEFORE,  # depth of the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
@@ -63,8 +66,8 @@ STRIDE = np.uint64(4 * CHUNK)
     WX, WY, WZ, BU, BV,  # w, and n.(N_k,a v_k)
     OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
-) = (np.uint64(k * CHUNK) for k in range(43))  # fmt: skip
-FIELDS = 43
+) = (np.uint64(k * CHUNK) for k in range(44))  # fmt: skip
+FIELDS = 44
 
 
 def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -111,15 +114,15 @@ def collect_row(f, buffer, i, a, b):
 
 
 @njit(**FAST)
-def pack_rows(x, packed, low, high):
-    """Rows low..high-1 of x (3, n, m) as (x, y, z, 0) into packed (n, m, 4)."""
+def pack_rows(x, cover, packed, low, high):
+    """Rows low..high-1 of x (3, n, m) and of cover (n, m) as (x, y, z, cover) into packed (n, m, 4)."""
     for i in range(low, high):
-        x0, x1, x2, row = x[0, i], x[1, i], x[2, i], packed[i]
+        x0, x1, x2, c, row = x[0, i], x[1, i], x[2, i], cover[i], packed[i]
         for j in range(x0.shape[0]):
             row[j, 0] = x0[j]
             row[j, 1] = x1[j]
             row[j, 2] = x2[j]
-            row[j, 3] = 0.0
+            row[j, 3] = c[j]
 
 
 @njit(**FAST)
@@ -231,6 +234,7 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         w[NY + t] = ny
         w[NZ + t] = nz
         w[D + t] = d
+        w[COVER + t] = min(1.0, surface[k + THREE])
         w[GAP + t] = sign * d - offset
         w[GUU + t] = guu
         w[GUV + t] = guv
@@ -253,7 +257,9 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
         touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
         touches = touches and abs(w[DU + t]) < FARTHEST and abs(w[DV + t]) < FARTHEST
         i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
-        if touches and cell[np.uint64(i), np.uint64(j)] > 0.0:
+        if touches and w[COVER + t] > 0.0 and cell[np.uint64(i), np.uint64(j)] > 0.0:
+            w[AREA + t] *= w[COVER + t]
+            w[WHOLE + t] = w[AREA + t]
             touching += 1
             continue
         if w[BEFORE + t] > 0.0:
@@ -310,7 +316,7 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         across = ou * (guu * tu + guv * tv) + ov * (guv * tu + gvv * tv)
         rubbed += 0.5 * kt * (1.0 - keep) * (across + keep * stretch2) - dt * viscous
         opened = stiffness * (w[WHOLE + t] - w[AREA + t]) if w[BEFORE + t] > 0.0 else 0.0
-        rubbed += 0.5 * TANGENTIAL * opened * (ou * (guu * ou + guv * ov) + ov * (guv * ou + gvv * ov))
+        rubbed += 0.5 * TANGENTIAL * opened * across
         # the spring's force is taken to act through all of the step in which contact begins or ends
         before, now = w[BEFORE + t], max(0.0, -w[GAP + t])
         damped -= 0.5 * opened * before * (rate - before * inverse_dt)
@@ -382,7 +388,7 @@ def layer_forces(
 ):
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
-    xs, vs, fs (3, n, m) slave; xm, vm (N, M, 4) master as from `pack_rows`; area (n, m) [mm2]; cell (N, M) area of
+    xs, vs, fs (3, n, m) slave; xm, vm (N, M, 4) master as from `pack_rows`, vm with zeros for the cover; area (n, m) [mm2]; cell (N, M) area of
     the master's cells; centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
     of the last step; slip (2, n, m) [grid units]; both updated; rest (n, m) int8: steps to rest, negative for nodes
     that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a

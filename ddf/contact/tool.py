@@ -4,9 +4,9 @@ The platform is met by the nodes (d = z, n = e_z), the tool by 2 x 2 points a ce
 passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and gradient n is
 pushed by
 
-    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset,
+    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
 
-never pulled, and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the node's
+(v*: the velocity at the end of the step without the tool: by then it would still be pushed), and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the node's
 area or a quarter of the cell's; dt K v is the spring's force at the place that the point is moving to. The force goes
 to the node, or to the cell's four with the point's bilinear weights N_i, and with it the tensor
 
@@ -18,8 +18,8 @@ entries are positive), so the tool, however stiff, sets no limit to the step: wi
 leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
 forces is dissipation, booked with the mid-step velocity.
 
-The last row of a block of cells belongs to the next block: it goes to `carry`, which is added later in a fixed
-order. A cell found far from the tool does not look at it for as many steps as it needs at the given reach to come near.
+Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
+to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not look at it for as many steps as it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -33,24 +33,24 @@ from ddf.elements.tension import FAST
 FREE = 1.0e30
 LONGEST_SLEEP = 16
 
-#: columns of `press`: tensor J (xx, yy, zz, xy, xz, yz) [tonne] and viscous force of the tool [N] on each node
-PRESS = 9
-CARRY = 3 + PRESS  # force and `press` of the row that belongs to the next block
+#: columns of `press`, what the tool does to each node: force [N], tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous
+#: part of the force [N]
+PRESS = 12
 
 
 @njit(inline="always")
-def _held(p, anchor, nx, ny, nz):
-    """Squared length of the friction spring along the surface."""
+def _held(p, v, dt, anchor, nx, ny, nz):
+    """Stretches of the friction spring along the surface, now and in the last step, multiplied."""
     x, y, z = p[0] - anchor[0], p[1] - anchor[1], p[2] - anchor[2]
-    s = x * nx + y * ny + z * nz
-    return x * x + y * y + z * z - s * s
+    ox, oy, oz = x - dt * v[0], y - dt * v[1], z - dt * v[2]
+    return x * ox + y * oy + z * oz - (x * nx + y * ny + z * nz) * (ox * nx + oy * ny + oz * nz)
 
 
 @njit(**FAST)
-def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
-    """Force, tensor and viscous force of one contact point, into give (12,), the order of CARRY; returns its gap.
+def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
+    """What one contact point does, into give (PRESS,); returns whether it touches.
 
-    p, v: position and velocity relative to the tool; d, n: distance and normal there; k [N/mm], c [N s/mm]; updates
+    p, v, ahead: position, velocity, and velocity at the end without the tool, relative to the tool; d, n: distance and normal there; k [N/mm], c [N s/mm]; updates
     its anchor and the energies out (4,): normal spring, tangential spring, friction loss, loss where contact begins
     or ends [N mm].
     """
@@ -60,15 +60,16 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     if near >= 0.0:
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
-            out[2] += 0.5 * TANGENTIAL * k * _held(p, anchor, nx, ny, nz)
+            out[2] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
             out[3] -= 0.5 * k * before * (dt * rate - before)
         anchor[0] = FREE
-        return near
+        return False
     px, py, pz = p
     c += dt * k
     inertia = dt * c
     spring = -k * near
-    normal = max(0.0, spring - c * rate)
+    pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
+    normal = spring - c * rate if pushed else 0.0
     out[0] -= 0.5 * spring * near
     if anchor[0] >= FREE:
         anchor[0], anchor[1], anchor[2] = px, py, pz
@@ -79,7 +80,7 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
     k, c = TANGENTIAL * k, TANGENTIAL * c
     tx, ty, tz = -k * sx - c * vx, -k * sy - c * vy, -k * sz - c * vz
-    limit = mu * normal
+    limit = mu * max(0.0, normal)
     share = coulomb(length(tx, ty, tz), limit)
     tx, ty, tz = tx * share, ty * share, tz * share
     stretch = length(sx, sy, sz)
@@ -92,7 +93,7 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     out[2] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
     along = inertia * TANGENTIAL * share
-    across = (inertia if normal > 0.0 else 0.0) - along
+    across = (inertia if pushed else 0.0) - along
     viscous = normal - spring
     give[0], give[1], give[2] = normal * nx + tx, normal * ny + ty, normal * nz + tz
     give[3], give[4], give[5] = along + across * nx * nx, along + across * ny * ny, along + across * nz * nz
@@ -102,29 +103,42 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
         viscous * ny + ty + held * sy,
         viscous * nz + tz + held * sz,
     )
-    return near
+    return True
 
 
 @njit(**FAST)
-def _put(f, press, i, j, weight, give):
-    """Add a point's share to node (i, j) of f (3, n, m) and press (n, m, 9)."""
-    for c in range(3):
-        f[c, i, j] += weight * give[c]
+def _put(row, weight, give):
+    """Add a point's share to a node's row of press (PRESS,)."""
     for c in range(PRESS):
-        press[i, j, c] += weight * give[3 + c]
+        row[c] += weight * give[c]
+
+
+@njit(inline="always")
+def _mean(a, c, i, j, r, s):
+    """Component c of a (3, n, m) at the place (r, s) in cell (i, j)."""
+    return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, j + 1]) + r * ((1 - s) * a[c, i + 1, j] + s * a[c, i + 1, j + 1])
+
+
+@njit(inline="always")
+def _push(f, inverse, c, i, j, r, s):
+    """The same of f / m."""
+    return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, j + 1] * inverse[i, j + 1]) + r * (
+        (1 - s) * f[c, i + 1, j] * inverse[i + 1, j] + s * f[c, i + 1, j + 1] * inverse[i + 1, j + 1]
+    )
 
 
 @njit(**FAST)
 def tool_forces(
-    x, v, f, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors, sleep,
-    low, high, out, give,
+    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors,
+    sleep, low, high, out, give,
 ):  # fmt: skip
-    """Add the forces of the nodes and cells of rows low..high-1; returns the tool's work [N mm], and if carry is used.
+    """Gather what the tool does to nodes and cells of rows low..high-1; returns its work [N mm], and if carry is used.
 
-    x, v, f (3, n, m); press (n, m, 9), carry (m + 2, 12): see PRESS, CARRY; pressed (n,) bool: rows of press in use;
-    area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping, friction);
-    motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm]; anchors (n, m, 5, 3): of the
-    node, of the cell's points; sleep (n, m) int16 of the cells; out (4,) as in `_point`; give (12,) scratch.
+    x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
+    pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
+    law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a point can go
+    in a step [mm]; anchors (n, m, 5, 3): of the node, of the cell's points; sleep (n, m) int16 of the cells; out (4,)
+    as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
     z, speed = motion
@@ -137,12 +151,13 @@ def tool_forces(
                 continue
             p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
             u = (v[0, i, j], v[1, i, j], v[2, i, j] - speed)
+            h = dt * inverse[i, j]
+            ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
             a, up = area[i, j], (0.0, 0.0, 1.0)
-            near = _point(p, u, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give)
-            if near < 0.0:
+            if _point(p, u, ahead, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give):
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(f, press, i, j, 1.0, give)
+                _put(press[i, j], 1.0, give)
         k = i + 1
         if k == n:
             break
@@ -155,61 +170,58 @@ def tool_forces(
             for q in range(4):
                 r = 0.25 if q < 2 else 0.75
                 s = 0.25 if q % 2 == 0 else 0.75
-                w00, w10, w01, w11 = (1 - r) * (1 - s), r * (1 - s), (1 - r) * s, r * s
-                p = (
-                    w00 * x[0, i, j] + w10 * x[0, k, j] + w01 * x[0, i, j + 1] + w11 * x[0, k, j + 1],
-                    w00 * x[1, i, j] + w10 * x[1, k, j] + w01 * x[1, i, j + 1] + w11 * x[1, k, j + 1],
-                    w00 * x[2, i, j] + w10 * x[2, k, j] + w01 * x[2, i, j + 1] + w11 * x[2, k, j + 1] - z,
-                )
+                p = (_mean(x, 0, i, j, r, s), _mean(x, 1, i, j, r, s), _mean(x, 2, i, j, r, s) - z)
                 d, nx, ny, nz = sample(tool, origin, spacing, p[0], p[1], p[2])
                 nearest = min(nearest, d - offset)
                 if d >= offset and anchors[i, j, 1 + q, 0] >= FREE:
                     continue
-                u = (
-                    w00 * v[0, i, j] + w10 * v[0, k, j] + w01 * v[0, i, j + 1] + w11 * v[0, k, j + 1],
-                    w00 * v[1, i, j] + w10 * v[1, k, j] + w01 * v[1, i, j + 1] + w11 * v[1, k, j + 1],
-                    w00 * v[2, i, j] + w10 * v[2, k, j] + w01 * v[2, i, j + 1] + w11 * v[2, k, j + 1] - speed,
+                u = (_mean(v, 0, i, j, r, s), _mean(v, 1, i, j, r, s), _mean(v, 2, i, j, r, s) - speed)
+                ahead = (
+                    u[0] + dt * _push(f, inverse, 0, i, j, r, s),
+                    u[1] + dt * _push(f, inverse, 1, i, j, r, s),
+                    u[2] + dt * _push(f, inverse, 2, i, j, r, s),
                 )
-                near = _point(
-                    p, u, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q], out, give
-                )
-                if near >= 0.0:
+                if not _point(
+                    p, u, ahead, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q],
+                    out, give,
+                ):  # fmt: skip
                     continue
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(f, press, i, j, w00, give)
-                _put(f, press, i, j + 1, w01, give)
+                _put(press[i, j], (1 - r) * (1 - s), give)
+                _put(press[i, j + 1], (1 - r) * s, give)
                 if k < high:
                     pressed[k] = True
-                    _put(f, press, k, j, w10, give)
-                    _put(f, press, k, j + 1, w11, give)
+                    _put(press[k, j], r * (1 - s), give)
+                    _put(press[k, j + 1], r * s, give)
                 else:
                     carried = True
-                    for c in range(CARRY):
-                        carry[j, c] += w10 * give[c]
-                        carry[j + 1, c] += w11 * give[c]
+                    _put(carry[j], r * (1 - s), give)
+                    _put(carry[j + 1], r * s, give)
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
     return work, carried
 
 
 @njit(**FAST)
-def settle_row(v, f, press, mass, speed, dt):
-    """Forces of a row as the implicit tool lets them act: f <- m (m + J)^-1 f; press is cleared.
+def settle_row(v, f, press, mass, speed, keep, dt):
+    """Add the tool's forces to a row and let it act on the sum implicitly: f <- m (m + J)^-1 f; press is cleared.
 
-    v, f (3, m); press (m, 9); mass (m,), 0 where held. Returns the tool's further work and what was dissipated
+    v, f (3, m); press (m, PRESS); mass (m,), 0 where held; keep: what mass
+    damping leaves of v. Returns the tool's further work and what was dissipated
     [N mm]: the viscous force and the change of f, times the mid-step velocity relative to the tool.
     """
     work = lost = 0.0
     for j in range(mass.shape[0]):
         m = mass[j]
-        if m > 0.0 and press[j, 0] + press[j, 1] + press[j, 2] > 0.0:
-            a, b, c = m + press[j, 0], m + press[j, 1], m + press[j, 2]
-            d, e, g = press[j, 3], press[j, 4], press[j, 5]  # xy, xz, yz
+        viscous = abs(press[j, 9]) + abs(press[j, 10]) + abs(press[j, 11])
+        if m > 0.0 and press[j, 3] + press[j, 4] + press[j, 5] + viscous > 0.0:
+            a, b, c = m + press[j, 3], m + press[j, 4], m + press[j, 5]
+            d, e, g = press[j, 6], press[j, 7], press[j, 8]  # xy, xz, yz
             aa, bb, cc = b * c - g * g, a * c - e * e, a * b - d * d
             dd, ee, gg = e * g - d * c, d * g - e * b, d * e - a * g
             r = m / (a * aa + d * dd + e * ee)
-            x, y, z = f[0, j], f[1, j], f[2, j]
+            x, y, z = f[0, j] + press[j, 0], f[1, j] + press[j, 1], f[2, j] + press[j, 2]
             fx = r * (aa * x + dd * y + ee * z)
             fy = r * (dd * x + bb * y + gg * z)
             fz = r * (ee * x + gg * y + cc * z)
@@ -218,9 +230,9 @@ def settle_row(v, f, press, mass, speed, dt):
             x, y, z = fx - x, fy - y, fz - z  # what the tensor took
             work += z * speed * dt
             lost -= dt * (
-                (x + press[j, 6]) * (v[0, j] + h * fx)
-                + (y + press[j, 7]) * (v[1, j] + h * fy)
-                + (z + press[j, 8]) * (v[2, j] + h * fz - speed)
+                (x + press[j, 9]) * (keep * v[0, j] + h * fx)
+                + (y + press[j, 10]) * (keep * v[1, j] + h * fy)
+                + (z + press[j, 11]) * (keep * v[2, j] + h * fz - speed)
             )
         for k in range(PRESS):
             press[j, k] = 0.0

@@ -2,11 +2,13 @@
 
 Step n, of length dt (leapfrog: v lives half a step behind x):
 
-    1  f = gravity + shear + bending + folds + diaphragms + pressure + contact + tool      blocks of rows
-    2  f of the tool's sheet <- m (m + J)^-1 f (`contact.tool`)
-       v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+    1  f = gravity + shear + bending + folds + diaphragms + pressure + contact              blocks of rows
+    2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+       (not the sheet that meets the tool)
     3  plies: v and kept tensions corrected along family 1 (`elements.tension`)             fibre lines
+       what the tool does to its sheet, f of which is known                                 blocks of rows
     4  plies: the same along family 2                                                       fibre lines
+       tool's sheet: f <- m (m + J)^-1 (f + tool), then as 2 (`contact.tool`)               blocks of rows
     5, 6  as 3, 4, with the string's step
     7  plies: x <- x + dt v                                                                 blocks of rows
 
@@ -64,17 +66,18 @@ class Work(NamedTuple):
     """Scratch memory. Nothing in it outlives a step but `sleep` and `rest`, set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
-    packed: np.ndarray  # (4 N,) positions as (x, y, z, 0)
+    packed: np.ndarray  # (4 N,) positions as (x, y, z, cover)
     rates: np.ndarray  # (4 N,) velocities likewise
+    nothing: np.ndarray  # (N,) zeros
     buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
     chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
     sums: np.ndarray  # (members, 4)
-    carry: np.ndarray  # (blocks, widest + 2, CARRY) row of the next block, from the tool's contact
+    carry: np.ndarray  # (blocks, widest + 2, PRESS) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
-    give: np.ndarray  # (members, CARRY)
+    give: np.ndarray  # (members, PRESS)
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
@@ -164,8 +167,8 @@ def _pack(model, state, work, b):
     """Pack the positions and velocities of a block's rows for contact."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    pack_rows(vectors(state.x, sheet), _packed(work.packed, sheet), block.low, block.high)
-    pack_rows(vectors(state.v, sheet), _packed(work.rates, sheet), block.low, block.high)
+    pack_rows(vectors(state.x, sheet), scalars(model.cover, sheet), _packed(work.packed, sheet), block.low, block.high)
+    pack_rows(vectors(state.v, sheet), scalars(work.nothing, sheet), _packed(work.rates, sheet), block.low, block.high)
 
 
 @njit(**FAST)
@@ -204,7 +207,7 @@ def _layers(model, state, work, member, b, dt, reach):
 
 @njit(**FAST)
 def _tool(model, state, work, member, row, b, dt, reach):
-    """Forces of the tool on a block of its sheet."""
+    """What the tool does to a block of its sheet, on which all other forces stand."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
@@ -216,7 +219,7 @@ def _tool(model, state, work, member, row, b, dt, reach):
     out[:] = 0.0
     law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
     done, work.carried[b] = tool_forces(
-        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet),
+        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.inverse_mass, sheet),
         work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
         state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
@@ -229,8 +232,8 @@ def _tool(model, state, work, member, row, b, dt, reach):
 
 
 @njit(**FAST)
-def _collect(model, state, work, row, b):
-    """Add what other blocks put on this block's rows: master buffers, then the tool's carried row."""
+def _collect(model, state, work, b):
+    """Add what other blocks' slaves put on this block's rows."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     f = vectors(state.f, sheet)
@@ -247,28 +250,24 @@ def _collect(model, state, work, row, b):
                 if j1 > j0:
                     collect_row(f, buffer, i, j0, j1)
             index += 1
-    if block.sheet == model.tool_sheet:
-        _settle_tool(model, state, work, row, b)
 
 
 @njit(**FAST)
 def _settle_tool(model, state, work, row, b):
-    """Add what the block before carried over; then let the implicit tool act on the sum of all forces."""
+    """Add what the block before carried over; then let the implicit tool act."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    f, v, mass = vectors(state.f, sheet), vectors(state.v, sheet), scalars(model.mass, sheet)
+    v, f, mass = vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.mass, sheet)
     press = work.press.reshape((sheet.rows, sheet.cols, PRESS))
     if block.low > 0 and work.carried[b - 1]:
         carry = work.carry[b - 1]
         for j in range(sheet.cols):
-            for c in range(3):
-                f[c, block.low, j] += carry[j, c]
             for c in range(PRESS):
-                press[block.low, j, c] += carry[j, 3 + c]
+                press[block.low, j, c] += carry[j, c]
         work.pressed[block.low] = True
     for i in range(block.low, block.high):
         if work.pressed[i]:
-            done, lost = settle_row(v[:, i], f[:, i], press[i], mass[i], row[TOOL_SPEED], model.dt)
+            done, lost = settle_row(v[:, i], f[:, i], press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt)
             state.ledger[b, TOOL_WORK] += done
             state.ledger[b, TOOL_DAMPING] += lost
             work.pressed[i] = False
@@ -366,13 +365,18 @@ def _pull(model, state, work, member, family, sweep, k, low, high):
 
 
 @njit(**FAST)
-def _pull_family(model, state, work, sync, base, member, family, sweep):
-    """All bundles of a family, shared among the members."""
+def _pull_family(model, state, work, member, family, sweep, t):
+    """Task number t of a family's bundles."""
     bundles = work.bundles1 if family == 1 else work.bundles2
-    t = draw(sync, base)
-    while t < bundles.shape[0]:
-        _pull(model, state, work, member, family, sweep, bundles[t, 0], bundles[t, 1], bundles[t, 2])
-        t = draw(sync, base)
+    _pull(model, state, work, member, family, sweep, bundles[t, 0], bundles[t, 1], bundles[t, 2])
+
+
+@njit(**FAST)
+def _move(model, state, work, row, b, member):
+    """Kick, move and pack a block of the tool's sheet after the tool has acted."""
+    _settle_tool(model, state, work, row, b)
+    _kick(model, state, b, row[DAMPING], work.scratch[member])
+    _pack(model, state, work, b)
 
 
 @njit(**FAST)
@@ -382,6 +386,11 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     first: number of the first step; reach: way that a sheet can go in a step, for what sleeps and rests [mm].
     """
     blocks = model.blocks.shape[0]
+    tool_blocks, tool_first = 0, 0
+    if model.tool_sheet >= 0:
+        tool_first = _first_block(model, model.tool_sheet)
+        while tool_first + tool_blocks < blocks and model.blocks[tool_first + tool_blocks].sheet == model.tool_sheet:
+            tool_blocks += 1
     base = 0
     b = draw(sync, base)
     while b < blocks:
@@ -395,25 +404,34 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         while b < blocks:
             _internal(model, state, row, b, work.scratch[member])
             _layers(model, state, work, member, b, model.dt, reach)
-            if model.blocks[b].sheet == model.tool_sheet:
-                _tool(model, state, work, member, row, b, model.dt, reach)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:
-            _collect(model, state, work, row, b)
-            _kick(model, state, b, row[DAMPING], work.scratch[member])
-            if model.sheets[model.blocks[b].sheet].kind != PLY:
-                _pack(model, state, work, b)
+            _collect(model, state, work, b)
+            if model.blocks[b].sheet != model.tool_sheet:
+                _kick(model, state, b, row[DAMPING], work.scratch[member])
+                if model.sheets[model.blocks[b].sheet].kind != PLY:
+                    _pack(model, state, work, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
         early = 1 + (first + n) % 2
         for turn in range(4):
             family = early if turn % 2 == 0 else 3 - early
-            _pull_family(model, state, work, sync, base, member, family, turn // 2)
-            base += (work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]) + members
+            bundles = work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]
+            also = tool_blocks if turn < 2 else 0
+            t = draw(sync, base)
+            while t < also + bundles:
+                if t >= also:
+                    _pull_family(model, state, work, member, family, turn // 2, t - also)
+                elif turn == 0:
+                    _tool(model, state, work, member, row, tool_first + t, model.dt, reach)
+                else:
+                    _move(model, state, work, row, tool_first + t, member)
+                t = draw(sync, base)
+            base += also + bundles + members
             barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:

@@ -149,7 +149,7 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray
             area=np.where(s.held, 0.0, area).ravel(), bar1=bar1.ravel(), bar2=bar2.ravel(),
             cell=np.pad(s.cells, ((0, 1), (0, 1))).ravel(), triple1=triple1.ravel(), triple2=triple2.ravel(),
             row_span=np.tile(np.array([0, m], np.int64), (n, 1)), weight=tangent_weights(bar1, bar2).ravel(),
-            centre=patch_centres(np.ones((n, m), bool)).ravel(),
+            centre=patch_centres(np.ones((n, m), bool)).ravel(), cover=np.ones(n * m),
         )  # fmt: skip
     pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
     pools["row_first"] = np.cumsum([0, *(int(n) for n in records["rows"][:-1])]).astype(np.int64)

@@ -100,7 +100,7 @@ def alone(scene: Scene, k: int) -> Scene:
     sheets = model.sheets[k : k + 1].copy()
     sheets["node"] = 0
     spans = int(model.row_first[k])
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
+    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
     small = model._replace(
         sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,
