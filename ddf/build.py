@@ -207,6 +207,7 @@ def _sheets(case: Case, stack: _Stack, terms):
     for k in range(count):
         s = sheets[k]
         s["node"], s["thickness"] = node, stack.thickness[k]
+        s["squeeze"] = stack.thickness[k] if case.solver.in_plane_pressure else 0.0
         s["hourglass"] = 4.0 * ogden.initial_shear_modulus(terms) * d.thickness_mm
         if 0 < k < count - 1:
             ply, material = stack.plies[k - 1], stack.materials[k - 1]
@@ -345,7 +346,7 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray) -> State:
     return State(
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
         place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors,
-        tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
+        press=np.zeros(model.mass.size), tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
         clock=np.zeros(2),
     )  # fmt: skip

@@ -13,13 +13,14 @@ x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] w
 place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
                                      viscous normal force [N]
 slip           (2, P)                slip of its friction spring, contravariant components [grid units]
-tool_anchor    (n, m, 5, 3)          anchors of a node's and its cell's points on the tool, tool frame [mm]
+tool_anchor    (n, m, 5, 3)          anchors of the points of a node and its cell on the tool, tool frame [mm]
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
 row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)
 col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
 cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
 bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
 tension1, 2    pool (N,)             tension of these bars [N]
+press          pool (N,)             sum of the normal forces of all contacts on a node [N]
 step           dt                    one evaluation of all forces [s]
 ============== ===================== =========================================================================
 """
@@ -34,9 +35,19 @@ from numba import njit
 PLY, DIAPHRAGM = 0, 1
 
 #: columns of the ledger: work done on a sheet, energy that left the sheets, and (FIBRE_WORK) work
-#: that fibre tension did on the plies' motion, per block of rows [N mm]
-(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING, FIBRE_WORK) = range(8)
-LEDGER = 8
+#: that fibre tension did on the plies' motion, work of contact pressure on layers that thin, per block of rows [N mm]
+(
+    PRESSURE_WORK,
+    TOOL_WORK,
+    FRICTION,
+    CONTACT_DAMPING,
+    TOOL_FRICTION,
+    TOOL_DAMPING,
+    MASS_DAMPING,
+    FIBRE_WORK,
+    SQUEEZE_WORK,
+) = range(9)
+LEDGER = 9
 #: columns of the springs: energy stored now in the contacts of a block (normal, tangential; tool likewise)
 (NORMAL_SPRING, TANGENTIAL_SPRING, TOOL_NORMAL_SPRING, TOOL_TANGENTIAL_SPRING) = range(4)
 SPRINGS = 4
@@ -63,6 +74,7 @@ SHEET = np.dtype(
         ("thickness", np.float64),
         ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
         ("hourglass", np.float64),  # modulus 4 mu t of the diaphragms: hourglass strains, fold struts [N/mm]
+        ("squeeze", np.float64),  # thickness on which contact pressure acts in the plane, 0: on none [mm]
         ("fold_radius", np.float64),  # least radius of a fold [mm]
     ],
     align=True,
@@ -140,6 +152,7 @@ class State(NamedTuple):
     place: np.ndarray
     slip: np.ndarray
     tool_anchor: np.ndarray
+    press: np.ndarray  # (N,) contact force on each node in the last step [N]
     tension1: np.ndarray  # (N,) tension of each bar, as the last step left it [N]
     tension2: np.ndarray
     ledger: np.ndarray

@@ -37,7 +37,7 @@ def make_work(model: Model, members: int) -> Work:
     return Work(
         scratch=np.zeros((members, max(SCRATCH_ROWS * widest, bending.SCRATCH, shear.SCRATCH))),
         packed=np.zeros(4 * model.mass.size), rates=np.zeros(4 * model.mass.size),
-        nothing=np.zeros(model.mass.size),
+        nothing=np.zeros(model.mass.size), normal=np.zeros(model.mass.size),
         buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
         chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, PRESS)),
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),

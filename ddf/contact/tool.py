@@ -1,14 +1,15 @@
 """Contact of a diaphragm with the rigid tool and the platform around it, implicit in time.
 
-The platform is met by the nodes (d = z, n = e_z), the tool by 2 x 2 points a cell at its quarters, so that no ridge
-passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and gradient n is
-pushed by
+The platform is met by the nodes (d = z, n = e_z), the tool by nodes, middles of edges and centres of cells, so that
+no ridge passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and
+gradient n is pushed by
 
     (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
 
-(v*: the velocity at the end of the step without the tool: by then it would still be pushed), and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the node's
-area or a quarter of the cell's; dt K v is the spring's force at the place that the point is moving to. The force goes
-to the node, or to the cell's four with the point's bilinear weights N_i, and with it the tensor
+(v*: the velocity at the end of the step without the tool: by then it would still be pushed), and held by
+Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v
+is the spring's force at the place that the point is moving to. The force goes to the node, or to the cell's four
+with the point's bilinear weights N_i, and with it the tensor
 
     J_i = N_i (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
 
@@ -19,7 +20,8 @@ leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the ten
 forces is dissipation, booked with the mid-step velocity.
 
 Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
-to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not look at it for as many steps as it needs at the given reach to come near.
+to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not
+look at it for as many steps as it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -50,9 +52,9 @@ def _held(p, v, dt, anchor, nx, ny, nz):
 def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     """What one contact point does, into give (PRESS,); returns whether it touches.
 
-    p, v, ahead: position, velocity, and velocity at the end without the tool, relative to the tool; d, n: distance and normal there; k [N/mm], c [N s/mm]; updates
-    its anchor and the energies out (4,): normal spring, tangential spring, friction loss, loss where contact begins
-    or ends [N mm].
+    p, v, ahead: position, velocity, and velocity at the end without the tool, relative to the tool; d, n: distance
+    and normal there; k [N/mm], c [N s/mm]; updates its anchor and the energies out (4,): normal spring, tangential
+    spring, friction loss, loss where contact begins or ends [N mm].
     """
     near = d - offset
     nx, ny, nz = n
@@ -114,17 +116,23 @@ def _put(row, weight, give):
 
 
 @njit(inline="always")
-def _mean(a, c, i, j, r, s):
-    """Component c of a (3, n, m) at the place (r, s) in cell (i, j)."""
-    return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, j + 1]) + r * ((1 - s) * a[c, i + 1, j] + s * a[c, i + 1, j + 1])
+def _mean(a, c, i, k, j, l, r, s):
+    """Component c of a (3, n, m) at the place (r, s) between rows i, k and columns j, l."""
+    return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, l]) + r * ((1 - s) * a[c, k, j] + s * a[c, k, l])
 
 
 @njit(inline="always")
-def _push(f, inverse, c, i, j, r, s):
+def _push(f, inverse, c, i, k, j, l, r, s):
     """The same of f / m."""
-    return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, j + 1] * inverse[i, j + 1]) + r * (
-        (1 - s) * f[c, i + 1, j] * inverse[i + 1, j] + s * f[c, i + 1, j + 1] * inverse[i + 1, j + 1]
+    return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, l] * inverse[i, l]) + r * (
+        (1 - s) * f[c, k, j] * inverse[k, j] + s * f[c, k, l] * inverse[k, l]
     )
+
+
+@njit(inline="always")
+def _dual(d, j):
+    """Length that line j of a grid stands for, from its cells' sizes d."""
+    return 0.5 * ((d[j - 1] if j > 0 else 0.0) + (d[j] if j < d.shape[0] else 0.0))
 
 
 @njit(**FAST)
@@ -137,7 +145,8 @@ def tool_forces(
     x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
     pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
     law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a point can go
-    in a step [mm]; anchors (n, m, 5, 3): of the node, of the cell's points; sleep (n, m) int16 of the cells; out (4,)
+    in a step [mm]; anchors (n, m, 5, 3): of the node on the platform, then of the node, the
+    middles of the edges along columns and rows, and the centre on the tool; sleep (n, m) int16; out (4,)
     as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
@@ -158,28 +167,37 @@ def tool_forces(
                 work += give[2] * speed * dt
                 pressed[i] = True
                 _put(press[i, j], 1.0, give)
-        k = i + 1
-        if k == n:
-            break
-        for j in range(m - 1):
+        k = min(i + 1, n - 1)
+        for j in range(m):
             if sleep[i, j] > 0:
                 sleep[i, j] -= 1
                 continue
-            a = 0.25 * dx[i] * dy[j]
+            l = min(j + 1, m - 1)
             nearest = 1.0e3
             for q in range(4):
-                r = 0.25 if q < 2 else 0.75
-                s = 0.25 if q % 2 == 0 else 0.75
-                p = (_mean(x, 0, i, j, r, s), _mean(x, 1, i, j, r, s), _mean(x, 2, i, j, r, s) - z)
+                if (q >= 2 and k == i) or (q % 2 == 1 and l == j):
+                    continue
+                r = 0.0 if q < 2 else 0.5
+                s = 0.0 if q % 2 == 0 else 0.5
+                p = (
+                    _mean(x, 0, i, k, j, l, r, s),
+                    _mean(x, 1, i, k, j, l, r, s),
+                    _mean(x, 2, i, k, j, l, r, s) - z,
+                )
                 d, nx, ny, nz = sample(tool, origin, spacing, p[0], p[1], p[2])
                 nearest = min(nearest, d - offset)
                 if d >= offset and anchors[i, j, 1 + q, 0] >= FREE:
                     continue
-                u = (_mean(v, 0, i, j, r, s), _mean(v, 1, i, j, r, s), _mean(v, 2, i, j, r, s) - speed)
+                a = 0.25 * (dx[i] if q >= 2 else _dual(dx, i)) * (dy[j] if q % 2 == 1 else _dual(dy, j))
+                u = (
+                    _mean(v, 0, i, k, j, l, r, s),
+                    _mean(v, 1, i, k, j, l, r, s),
+                    _mean(v, 2, i, k, j, l, r, s) - speed,
+                )
                 ahead = (
-                    u[0] + dt * _push(f, inverse, 0, i, j, r, s),
-                    u[1] + dt * _push(f, inverse, 1, i, j, r, s),
-                    u[2] + dt * _push(f, inverse, 2, i, j, r, s),
+                    u[0] + dt * _push(f, inverse, 0, i, k, j, l, r, s),
+                    u[1] + dt * _push(f, inverse, 1, i, k, j, l, r, s),
+                    u[2] + dt * _push(f, inverse, 2, i, k, j, l, r, s),
                 )
                 if not _point(
                     p, u, ahead, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q],
@@ -189,25 +207,37 @@ def tool_forces(
                 work += give[2] * speed * dt
                 pressed[i] = True
                 _put(press[i, j], (1 - r) * (1 - s), give)
-                _put(press[i, j + 1], (1 - r) * s, give)
+                if s > 0.0:
+                    _put(press[i, l], (1 - r) * s, give)
+                if r == 0.0:
+                    continue
                 if k < high:
                     pressed[k] = True
                     _put(press[k, j], r * (1 - s), give)
-                    _put(press[k, j + 1], r * s, give)
+                    _put(press[k, l], r * s, give)
                 else:
                     carried = True
                     _put(carry[j], r * (1 - s), give)
-                    _put(carry[j + 1], r * s, give)
+                    _put(carry[l], r * s, give)
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
     return work, carried
 
 
+@njit(inline="always")
+def _along(row, x, y, z):
+    """The tool's force on a node, with what the tensor took (x, y, z), along the force of its springs [N]."""
+    a, b, c = row[0] - row[9], row[1] - row[10], row[2] - row[11]
+    along = (row[0] + x) * a + (row[1] + y) * b + (row[2] + z) * c
+    return max(0.0, along) / max(length(a, b, c), 1e-30)
+
+
 @njit(**FAST)
-def settle_row(v, f, press, mass, speed, keep, dt):
+def settle_row(v, f, normal, press, mass, speed, keep, dt):
     """Add the tool's forces to a row and let it act on the sum implicitly: f <- m (m + J)^-1 f; press is cleared.
 
-    v, f (3, m); press (m, PRESS); mass (m,), 0 where held; keep: what mass
+    v, f (3, m); press (m, PRESS); mass (m,), 0 where held; normal (m,)
+    gathers the tool's normal forces [N]; keep: what mass
     damping leaves of v. Returns the tool's further work and what was dissipated
     [N mm]: the viscous force and the change of f, times the mid-step velocity relative to the tool.
     """
@@ -228,6 +258,7 @@ def settle_row(v, f, press, mass, speed, keep, dt):
             f[0, j], f[1, j], f[2, j] = fx, fy, fz
             h = 0.5 * dt / m
             x, y, z = fx - x, fy - y, fz - z  # what the tensor took
+            normal[j] += _along(press[j], x, y, z)
             work += z * speed * dt
             lost -= dt * (
                 (x + press[j, 9]) * (keep * v[0, j] + h * fx)

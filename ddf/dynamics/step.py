@@ -2,7 +2,7 @@
 
 Step n, of length dt (leapfrog: v lives half a step behind x):
 
-    1  f = gravity + shear + bending + folds + diaphragms + pressure + contact              blocks of rows
+    1  f = gravity + shear + bending + folds + diaphragms + squeeze + pressure + contact    blocks of rows
     2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
        (not the sheet that meets the tool)
     3  plies: v and kept tensions corrected along family 1 (`elements.tension`)             fibre lines
@@ -37,6 +37,7 @@ from ddf.elements.fold import fold_forces, fold_lattice_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
+from ddf.elements.squeeze import squeeze_forces
 from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
 from ddf.model import (
     CONTACT_DAMPING,
@@ -46,6 +47,7 @@ from ddf.model import (
     MASS_DAMPING,
     NORMAL_SPRING,
     PLY,
+    SQUEEZE_WORK,
     TANGENTIAL_SPRING,
     TOOL_DAMPING,
     TOOL_FRICTION,
@@ -69,6 +71,7 @@ class Work(NamedTuple):
     packed: np.ndarray  # (4 N,) positions as (x, y, z, cover)
     rates: np.ndarray  # (4 N,) velocities likewise
     nothing: np.ndarray  # (N,) zeros
+    normal: np.ndarray  # (N,) normal contact forces on slaves [N]
     buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
     chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
@@ -117,6 +120,12 @@ def _internal(model, state, row, b, scratch):
     for i in range(low, high):
         for c in range(3):
             _weigh_row(f[c, i], model.gravity[c], mass[i])
+    if sheet.squeeze > 0.0:
+        power = squeeze_forces(
+            x, vectors(state.v, sheet), f, scalars(model.cell, sheet), scalars(state.press, sheet), sheet.squeeze,
+            low, high, w,
+        )  # fmt: skip
+        state.ledger[b, SQUEEZE_WORK] += model.dt * power
     if sheet.kind == PLY:
         shear_forces(x, f, scalars(model.cell, sheet), model.shear_tables[sheet.shear], low, high, scratch)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
@@ -178,6 +187,8 @@ def _layers(model, state, work, member, b, dt, reach):
     index = b - _first_block(model, block.sheet)
     out = work.sums[member]
     out[:] = 0.0
+    normal = scalars(work.normal, model.sheets[block.sheet])
+    normal[block.low : block.high] = 0.0
     scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member], work.chunks[3][member])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
@@ -189,7 +200,8 @@ def _layers(model, state, work, member, b, dt, reach):
         n = slave.rows * slave.cols
         first = pair.first
         layer_forces(
-            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), scalars(model.area, slave),
+            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), normal,
+            scalars(model.area, slave),
             _packed(work.packed, master), _packed(work.rates, master), scalars(model.cell, master),
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
@@ -236,7 +248,8 @@ def _collect(model, state, work, b):
     """Add what other blocks' slaves put on this block's rows."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    f = vectors(state.f, sheet)
+    f, press = vectors(state.f, sheet), scalars(state.press, sheet)
+    press[block.low : block.high] = scalars(work.normal, sheet)[block.low : block.high]
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
         if pair.master != block.sheet:
@@ -248,7 +261,7 @@ def _collect(model, state, work, b):
             for i in range(block.low, block.high):
                 j0, j1 = touched(span, i)
                 if j1 > j0:
-                    collect_row(f, buffer, i, j0, j1)
+                    collect_row(f, press, buffer, i, j0, j1)
             index += 1
 
 
@@ -258,7 +271,7 @@ def _settle_tool(model, state, work, row, b):
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     v, f, mass = vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.mass, sheet)
-    press = work.press.reshape((sheet.rows, sheet.cols, PRESS))
+    press, normal = work.press.reshape((sheet.rows, sheet.cols, PRESS)), scalars(state.press, sheet)
     if block.low > 0 and work.carried[b - 1]:
         carry = work.carry[b - 1]
         for j in range(sheet.cols):
@@ -267,7 +280,9 @@ def _settle_tool(model, state, work, row, b):
         work.pressed[block.low] = True
     for i in range(block.low, block.high):
         if work.pressed[i]:
-            done, lost = settle_row(v[:, i], f[:, i], press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt)
+            done, lost = settle_row(
+                v[:, i], f[:, i], normal[i], press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt
+            )
             state.ledger[b, TOOL_WORK] += done
             state.ledger[b, TOOL_DAMPING] += lost
             work.pressed[i] = False

@@ -25,6 +25,7 @@ from ddf.model import (
     MASS_DAMPING,
     PLY,
     PRESSURE_WORK,
+    SQUEEZE_WORK,
     TOOL_DAMPING,
     TOOL_FRICTION,
     TOOL_WORK,
@@ -136,5 +137,9 @@ def energies(model: Model, state: State) -> Energies:
             "mass_damping": float(ledger[MASS_DAMPING]),
             "fibre_waves": -float(ledger[FIBRE_WORK]) - tension,
         },
-        work={"pressure": float(ledger[PRESSURE_WORK]), "tool": float(ledger[TOOL_WORK])},
+        work={
+            "pressure": float(ledger[PRESSURE_WORK]),
+            "tool": float(ledger[TOOL_WORK]),
+            "thinning": float(ledger[SQUEEZE_WORK]),
+        },
     )

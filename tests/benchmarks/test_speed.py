@@ -126,7 +126,7 @@ def test_contact_of_a_pair(benchmark, state):
 
     def run():
         layer_forces(
-            xs, still, fs, area, packed, rates, cell, centre, place, slip, rest, buffer, span, pair[0],
+            xs, still, fs, area.copy(), area, packed, rates, cell, centre, place, slip, rest, buffer, span, pair[0],
             reach, 1e-5, 0, n, scratch, out,
         )  # fmt: skip
 

@@ -20,7 +20,7 @@ def make_pair(**values):
 
 def packed(x, cover=1.0):
     """Positions (3, n, m) as contact wants a master's: (n, m, 4), the last component its cover."""
-    return np.ascontiguousarray(np.moveaxis(np.concatenate([x, np.full((1, *x.shape[1:]), cover)]), 0, -1))
+    return np.ascontiguousarray(np.moveaxis(np.concatenate([x, np.broadcast_to(cover, (1, *x.shape[1:]))]), 0, -1))
 
 
 class Layers:
@@ -30,7 +30,7 @@ class Layers:
         self.pair = pair
         self.shape, self.master = xs.shape[1:], xm.shape[1:]
         self.area = np.full(self.shape, area)
-        self.cell = np.ones(self.master)
+        self.cell, self.cover = np.ones(self.master), 1.0
         self.centre = patch_centres(np.ones(self.master, bool))
         origin = xm[:2, 0, 0].reshape(2, 1, 1)
         start = (xs[:2] - origin) / spacing
@@ -57,7 +57,8 @@ class Layers:
             rest = np.zeros(self.shape, np.int8)
             scratch = tuple(part[0] for part in chunk_scratch(1))
             layer_forces(
-                xs, vs, fs, self.area, packed(xm), packed(vm, 0.0), self.cell, self.centre, self.place, self.slip, rest,
+                xs, vs, fs, np.zeros(self.shape), self.area, packed(xm, self.cover), packed(vm, 0.0), self.cell,
+                self.centre, self.place, self.slip, rest,
                 buffer, span, self.pair, 1e6, dt, low, high, scratch, self.out,
             )  # fmt: skip
             for i in range(self.master[0]):
@@ -105,7 +106,7 @@ class Tool:
         self.out, self.work = np.zeros(4), 0.0
 
     def forces(self, x, v=None, *, others=None, mass=None, z=0.0, speed=0.0, dt=1e-6, seam=None):
-        """The tool's forces; others: all other forces on the nodes, mass (n, m): without them nodes go on as they do."""
+        """The tool's forces; others: all other forces on nodes, mass (n, m); without them nodes go on as they do."""
         n, m = x.shape[1:]
         others = np.zeros_like(x) if others is None else others
         inverse = np.zeros((n, m)) if mass is None else np.where(mass > 0.0, 1.0 / np.where(mass > 0.0, mass, 1.0), 0.0)
