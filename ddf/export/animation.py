@@ -11,9 +11,9 @@ from ddf.build import load_path
 from ddf.case import case_from_dict
 from ddf.errors import UsageError
 from ddf.export.part import chosen_plies, frame_times
-from ddf.loads.path import LoadPath
 from ddf.output import figures
 from ddf.output.atomic import replacing
+from ddf.output.charts import moment
 from ddf.output.plots import formed_image
 from ddf.output.reopen import formed_ply
 from ddf.output.results import open_run
@@ -54,18 +54,8 @@ def export_animation(
         for time, surface in zip(times, surfaces, strict=True):
             sheet = SheetSnapshot(name, "ply", surface.x, surface.cell_fraction > 0, {}, {})
             image.set_data(formed_image(sheet, surface, box, PIXELS))
-            axes.set_title(f"{name}, {moment(loads, time)}", loc="left", color=figures.INK, fontsize=10)
+            axes.set_title(f"{name}, {moment(loads, time)}", loc="left", color=figures.INK, fontsize=figures.LABEL_PT)
             writer.grab_frame()
         for _ in range(int(HOLD_S * frames_per_s)):
             writer.grab_frame()
     return target
-
-
-def moment(loads: LoadPath, time: float) -> str:
-    """Stage, time, absolute pressures and lift at a time [s], on two lines."""
-    now = loads.at(time)
-    stage = loads.names[int(loads.stage(time * (1.0 - 1e-6)))]
-    return (
-        f"{stage}: {1e3 * time:.0f} ms\ncavity {now['cavity_pressure_kPa']:.1f} kPa,  "
-        f"box {now['box_pressure_kPa']:.1f} kPa,  lift {now['tool_lift_mm']:.1f} mm"
-    )

@@ -7,10 +7,11 @@ from PIL import Image
 from ddf.build import build_scene
 from ddf.case import case_from_dict, resolved_toml
 from ddf.errors import UsageError
-from ddf.export.animation import export_animation, moment
+from ddf.export.animation import export_animation
 from ddf.export.part import formed_part
 from ddf.export.tables import element_table
 from ddf.model import sheet_vectors
+from ddf.output.charts import moment
 from ddf.output.folder import RunFolder
 from ddf.output.snapshot import ply_surface, take_snapshot
 from ddf.output.tables import write_profiles
@@ -73,7 +74,7 @@ def test_animation_shows_every_frame_with_its_moment(formed, tmp_path):
     assert first[200:500, 200:500].std() > 3  # a ply with its lines
     loads = scene.path
     assert "lift: 30 ms" in moment(loads, 0.03)
-    assert "evacuate: 10 ms\ncavity 0.0 kPa,  box 101.3 kPa" in moment(loads, 0.01)
+    assert "evacuate: 10 ms\ncavity 0.0 kPa, box 101.3 kPa" in moment(loads, 0.01)
     with pytest.raises(UsageError, match="no ply 'x'"):
         export_animation(path, tmp_path, "x")
 
