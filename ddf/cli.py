@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 import click
 
 from ddf import __version__
+from ddf.cli_export import export
 from ddf.errors import DdfError
 
 MISSED = 4
@@ -46,15 +47,18 @@ def _fail(message: str, code: int) -> NoReturn:
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="ddf")
 def main() -> None:
-    r"""Simulate double diaphragm forming of woven fabric.
+    """Simulate double diaphragm forming of woven fabric.
 
     \b
     ddf init my-case.toml          a commented case to start from
     ddf check my-case.toml         what would run, without running it
     ddf run my-case.toml           run it; results go to runs/my-case
     ddf verify --quick             solve problems with known answers
-    """
+    ddf export fibres runs/my-case what the next program needs
+    """  # noqa: D301 (click wants the character itself)
 
+
+main.add_command(export)
 
 _SET = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. plies.0.element_mm=4."
