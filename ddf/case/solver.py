@@ -42,6 +42,19 @@ class Solver(Section):
         default=15.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
+    hourglass: float = Field(
+        default=0.05,
+        ge=0,
+        le=1,
+        description="Hourglass coefficient of shell-membrane plies (inferred): 1 is about full integration.",
+    )
+    fibre_damping: float = Field(
+        default=0.06,
+        ge=0,
+        le=1,
+        description="Damping of the fibres' stretching in shell-membrane plies, fraction of critical at the highest "
+        "frequency (inferred; linear bulk viscosity).",
+    )
     threads: int | None = Field(
         default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
     )

@@ -98,7 +98,7 @@ def alone(scene: Scene, k: int) -> Scene:
     blocks = model.blocks[model.blocks["sheet"] == k].copy()
     blocks["sheet"] = 0
     sheets = model.sheets[k : k + 1].copy()
-    sheets["node"] = 0
+    sheets["node"] = sheets["shell"] = 0
     spans = int(model.row_first[k])
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
     pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
