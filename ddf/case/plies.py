@@ -25,8 +25,8 @@ class Ply(Section):
     element_mm: float = Field(default=2.0, ge=0.2, le=100, description="Element size along the fibres [mm].")
     formulation: Literal["lattice", "shell-membrane"] = Field(
         default="lattice",
-        description="'lattice': bars, cells and triples along the fibres, tension implicit; 'shell-membrane': superimposed "
-        "membrane and shell elements with rotations and a rate law, explicit and slow, to compare with.",
+        description="'lattice': bars, cells and triples along the fibres, tension implicit; 'shell-membrane': "
+        "superimposed membrane and shell elements with a rate law, explicit and slow, to compare with.",
     )
     size_mm: Annotated[tuple[Side, Side], Field(strict=False)] | None = Field(
         default=None,

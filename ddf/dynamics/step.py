@@ -367,9 +367,7 @@ def _kick(model, state, b, damping, scratch):
         director, spin = shell_fields(state.director, sheet, 3), shell_fields(state.spin, sheet, 3)
         pull = shell_fields(state.pull, sheet, 3)
         for i in range(block.low, block.high):
-            square += turn_row(
-                director[:, i], spin[:, i], pull[:, i], mass[i], inverse[i], sheet.gyration, damping, dt
-            )
+            square += turn_row(director[:, i], spin[:, i], pull[:, i], mass[i], inverse[i], sheet.gyration, damping, dt)
     state.ledger[b, MASS_DAMPING] += 0.5 * square * (1.0 - damping * damping)
     if sheet.kind == PLY:
         state.ledger[b, FIBRE_WORK] -= 0.5 * damping * (damping * square + dt * power)

@@ -35,9 +35,9 @@ def shell_membrane_omega2(
     """Bound of omega^2 of a shell-membrane ply, whose fibre tension is explicit.
 
     Tension 4 E h/a^2/m, E h [N/mm] of the stiffer family, flexural part included, a the shorter side: with one point a
-    cell a wave that alternates along the grid's first direction has gradients along it only, and of others the squares of
-    the gradients' two parts add up to no more. Trellis and transverse shear K 4 q/m, q = 1/a1^2 + 1/a2^2, contact as in
-    `ply_omega2`; rotations add nothing (`shell_gyration`).
+    cell a wave that alternates along one grid direction has gradients along it only, and the squares of the two parts
+    of any other wave's gradients add up to no more. Trellis and transverse shear 4 (N_s' + K) q/m,
+    q = 1/a1^2 + 1/a2^2; contact as in `ply_omega2`; rotations add nothing (`shell_gyration`).
     """
     q = 1.0 / spacing[0] ** 2 + 1.0 / spacing[1] ** 2
     return (4.0 * stiff / min(spacing) ** 2 + 4.0 * (shear + transverse) * q + 2.0 * contact) / mass

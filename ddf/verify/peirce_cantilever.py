@@ -12,8 +12,8 @@ the most it can have. Free edges let it curl across (ky towards -kx), which cost
 surface of double curvature, here against shear only; so theory gives the range 0 to D/2, and no number. Peirce's
 formula reads the cylinder some per cent too stiff at this drop, so readings are compared with its reading.
 
-The lattice turns its grid with the fibres. Shell-membrane cells stay along the strip, the fibres at 45 degrees to them, as
-in the paper; the transverse shear stiffness is the paper's 20 N/mm, and the damping its 30 1/s.
+The lattice turns its grid with the fibres. Shell-membrane cells stay along the strip, the fibres at 45 degrees to
+them, as in the paper; the transverse shear stiffness is the paper's 20 N/mm.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 from ddf.case.schema import WovenMaterial
 from ddf.verify.cantilever import Cantilever
 from ddf.verify.elastica import heavy_elastica, peirce_rigidity
-from ddf.verify.problem import SHELL_MEMBRANE, LATTICE, Answer, Check, Curve, Figure, Options, Problem
+from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, Answer, Check, Curve, Figure, Options, Problem
 from ddf.verify.scenes import GRAVITY, areal_mass, erect_directors, held, ply_scene, positions
 
 LENGTH_MM, WIDTH_MM = 100.0, 25.0

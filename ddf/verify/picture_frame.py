@@ -22,7 +22,18 @@ from ddf.case.schema import WovenMaterial
 from ddf.elements.shear import shear_sine
 from ddf.simulate import Simulation
 from ddf.verify.probe import acting_forces
-from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, Answer, Check, Curve, Figure, FloatArray, Options, Problem, worst
+from ddf.verify.problem import (
+    LATTICE,
+    SHELL_MEMBRANE,
+    Answer,
+    Check,
+    Curve,
+    Figure,
+    FloatArray,
+    Options,
+    Problem,
+    worst,
+)
 from ddf.verify.scenes import damped, entered_law, fabric_of, held, lead, ply_scene, positions, settle
 
 SIDE_MM = 100.0

@@ -15,10 +15,10 @@ from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
+from ddf.elements.shell_membrane.rotations import normals
 from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
-from ddf.elements.shell_membrane.rotations import normals
 from ddf.model import Model, State, sheet_shells, sheet_vectors
 from ddf.scene import Scene
 from ddf.simulate import Simulation
@@ -81,7 +81,8 @@ def ply_scene(
 ) -> Scene:  # fmt: skip
     """A rectangular ply of that size about the origin, in the plane z = 0, free, at rest, undamped, without gravity.
 
-    orientation_deg: of the grid; fibre_deg: of family 1 to the grid, of a shell-membrane ply only.
+    orientation_deg: of the grid; fibre_deg: of family 1 to the grid, of a shell-membrane ply only; solver: keys of the
+    case's solver.
     """
     ply = {"orientation_deg": orientation_deg, "formulation": formulation}
     whole = case_scene(fabric, size_mm, element_mm, ply=ply, solver=dict(solver))
@@ -89,7 +90,7 @@ def ply_scene(
     sheet = scene.model.sheets[0]
     tangent = shear_law.largest_tangent(*entered_law(fabric))
     spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
-    mass = areal_mass(fabric)
+    mass = areal_mass(fabric) * whole.sheets[1].mass_scaling
     if formulation == SHELL_MEMBRANE:
         sheet["fibre"] = np.deg2rad(fibre_deg)
         omega2 = timestep.shell_membrane_omega2(

@@ -16,7 +16,18 @@ import numpy as np
 
 from ddf.simulate import Simulation
 from ddf.verify.probe import acting_forces
-from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, Answer, Check, Curve, Figure, FloatArray, Options, Problem, worst
+from ddf.verify.problem import (
+    LATTICE,
+    SHELL_MEMBRANE,
+    Answer,
+    Check,
+    Curve,
+    Figure,
+    FloatArray,
+    Options,
+    Problem,
+    worst,
+)
 from ddf.verify.scenes import damped, fabric_of, held, lead, ply_scene, positions, settle
 
 CELLS = 5
@@ -80,6 +91,9 @@ def solve(options: Options) -> Answer:
 
 
 PROBLEM = Problem(
-    "tension", "Tension along each fibre family, 5 x 5 cells", "the entered law, log strain", solve,
+    "tension",
+    "Tension along each fibre family, 5 x 5 cells",
+    "the entered law, log strain",
+    solve,
     (LATTICE, SHELL_MEMBRANE),
 )

@@ -1,9 +1,9 @@
 """What the cells of the shell-membrane formulation store, from their stresses.
 
-A rate law has no stored energy of its own. Taken as stored is what unloading at the present shear gives back: J A s^2/(2 E h)
-of tensions and J A m^2/(2 D) of moments; of shear A W(sin g), g accumulated. The work of the stresses (in the ledger) less
-this is what the law and the fibres' damping kept for good, or gave: stretching, shearing, unstretching and
-unshearing a cell is a closed way on which the work is not zero (J changes with the shear between).
+A rate law has no stored energy of its own. Taken as stored is what unloading at the present shear gives back:
+J A s^2/(2 E h) of tensions and J A m^2/(2 D) of moments; of shear A W(sin g), g accumulated. The work of the stresses
+(in the ledger) less this is what the law and the fibres' damping kept for good, or gave: stretching, shearing,
+unstretching and unshearing a cell is a closed way on which the work is not zero (J changes with the shear between).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ddf.elements.shell_membrane import history as h
 
 
 def stored_energies(history: np.ndarray, cell: np.ndarray, table: np.ndarray, sheet: np.void) -> dict[str, float]:
-    """Energies [N mm] of tension, shear and bending from history (HISTORY, n, m), cell (n, m), the shear table (K, 5)."""
+    """Energies [N mm] of tension, shear and bending; history (HISTORY, n, m), cell (n, m), shear table (K, 5)."""
     area = cell * np.sqrt(np.maximum(history[h.M_C11] * history[h.M_C22] - history[h.M_C12] ** 2, h.SMALLEST))
     tension = bending = 0.0
     for family, force, push, moment in (

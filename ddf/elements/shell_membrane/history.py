@@ -7,9 +7,9 @@ Fields of the history pool, (HISTORY, n, m) a sheet, value of cell (i, j) at (i,
 
 **The frame.** F = x,alpha (3 x 2) from the cell's flat reference, F = R U, C = F'F = U U. The Green-Naghdi frame R g
 turns with the cell, so all that the law sees is U: strain increment  de = sym(dU U^-1),  fibre f = U g / |U g|, and
-T_a turns R g_a on f_a (J. Thompson et al., Composites Part B 202 (2020) 108357, eqs. 1 to 7). With
-sym(dU U^-1) = U^-1 dC U^-1 / 2, U^-1 f = g/l, U^-1 f' = rot(C g)/(J l), f' = rot(f), l^2 = g.C g, J = det U, rot a quarter turn,
-the increments in a fibre's own frame need no square root of a matrix:
+T_a turns R g_a on f_a (A. J. Thompson et al., Composites Part B 202 (2020) 108357, eqs. 1 to 7). With sym(dU U^-1) =
+U^-1 dC U^-1 / 2, U^-1 f = g/l, U^-1 f' = rot(C g)/(J l), f' = rot(f), l^2 = g.C g, J = det U, rot a quarter turn, the
+increments in a fibre's own frame need no square root of a matrix:
 
     e11 = g.dC g / (2 l^2),     e12 = g.dC rot(C g) / (2 l^2 J)
 
@@ -67,9 +67,9 @@ def store(pool, field, count, i, start, size, w, at):
 
 
 @njit(**FAST)
-def add(f, i, start, size, w, at, sign):
-    """Add sign times three fields of a tile to row i of a vector array (3, n, m)."""
+def add(f, i, start, size, w, at):
+    """Add three fields of a tile to row i of a vector array (3, n, m)."""
     for c in range(3):
         o = at + np.uint64(c * TILE)
         for t in range(size):
-            f[c, i, start + t] += sign * w[o + t]
+            f[c, i, start + t] += w[o + t]

@@ -1,13 +1,14 @@
 """The membrane: four nodes, one point, the hypoelastic law of a woven fabric, hourglass control.
 
-Tangents t1, t2 are the means of opposite edges over the cell's reference sides: F = (t1, t2). In each family's frame (see
-`history`) the stresses grow by
+Tangents t1, t2 are the means of opposite edges over the cell's reference sides: F = (t1, t2). In each family's frame
+(see `history`) the stresses grow by
 
     d s11 = E h e11,     d s12 = h G(g) e12,     g = e12(1) + e12(2)
 
-e12 the tensor component, so that both families together do the work N_s dg a current area in pure shear, N_s = h integral of
-G: per reference area N_s cos g dg, which is what a picture frame measures. The thickness is constant. Stresses are those a
-current width, turned back and summed (Thompson et al. 2020, eqs. 8 to 10); their rate of work per reference area A is
+e12 the tensor component, so that both families together do the work N_s dg a current area in pure shear, N_s = h
+integral of G: per reference area N_s cos g dg, which is what a picture frame measures. The thickness is constant.
+Stresses are those a current width, turned back and summed (Thompson et al. 2020, eqs. 8 to 10); their rate of work per
+reference area A is
 
     A J sum (s11 e11 + 2 s12 e12) / dt = A S : dC / 2 dt,
     S = J sum [s11 g g' + s12 (g r' + r g') / J] / l^2,     r = rot(C g) (family 1), -rot(C g) (family 2)
@@ -15,9 +16,9 @@ current width, turned back and summed (Thompson et al. 2020, eqs. 8 to 10); thei
 so a cell pulls on its tangents by -A S_ab t_b: no resultant, no moment (S is symmetric), and none from a rigid motion.
 
 Hourglass: with one point the pattern q = (x00 - x10 + x11 - x01)/4 has no strain. Its part in the cell's plane stores
-U = k/2 |q|^2 - k/2 (q.n)^2,  k = r A (E h) (4/3) (1/a1^2 + 1/a2^2)/2,  r = 1 about the fully integrated cell (D. Flanagan, T.
-Belytschko, Int. J. Numer. Methods Eng. 17 (1981) 679, in total form: h.X = 0 on a rectangle, so rigid motions and even
-strains cost nothing). The normal part is left free: it is the twist, which a fabric does not resist.
+U = k/2 |q|^2 - k/2 (q.n)^2,  k = r A (E h) (4/3) (1/a1^2 + 1/a2^2)/2,  r = 1 about the fully integrated cell
+(D. Flanagan, T. Belytschko, Int. J. Numer. Methods Eng. 17 (1981) 679, in total form: h.X = 0 on a rectangle, so rigid
+motions and even strains cost nothing). The normal part is left free: it is the twist, which a fabric does not resist.
 
     dU/dq = k (q - (q.n) n),   dU/dt_a = k (q.n) (q.t^a) n      (t^a the contravariant tangents)
 
@@ -45,9 +46,9 @@ from ddf.elements.tension import FAST
 # fields of a tile: the history in its order, then tangents, hourglass, area, increments, and what pulls
 C11, C12, C22, N1, N2, S1, S2, E1, E2 = (np.uint64(k * TILE) for k in range(9))
 T1, T2, Q, AREA, D1, D2, R1, R2 = (np.uint64(k * TILE) for k in (9, 12, 15, 18, 19, 20, 21, 22))
-PLUS, MINUS, GLASS = (np.uint64(k * TILE) for k in (23, 26, 29))
+F00, F10, F01, F11 = (np.uint64(k * TILE) for k in (23, 26, 29, 32))
 Y, Z = np.uint64(TILE), np.uint64(2 * TILE)
-SCRATCH = 32 * TILE
+SCRATCH = 35 * TILE
 
 
 @njit(**FAST)
@@ -111,7 +112,7 @@ def _shears(count, table, step, w):
 
 @njit(**FAST)
 def _pulls(count, law, glass, b1, b2, w):
-    """What the energy rate pulls: plus and minus, of x11 - x00 and x10 - x01, and of the hourglass pattern."""
+    """Forces on the corners: by x11 - x00 (plus), by x10 - x01 (minus) and by the hourglass pattern."""
     c, s = law[0], law[1]
     for t in range(count):
         c11, c12, c22 = w[C11 + t], w[C12 + t], w[C22 + t]
@@ -137,13 +138,15 @@ def _pulls(count, law, glass, b1, b2, w):
         qa, qb = qx * ax + qy * ay + qz * az, qx * bx + qy * by + qz * bz
         k1, k2 = k * qn * (c22 * qa - c12 * qb) / det, k * qn * (c11 * qb - c12 * qa) / det
         h = 0.25 * k
-        w[GLASS + t], w[GLASS + Y + t], w[GLASS + Z + t] = h * (qx - qn * nx), h * (qy - qn * ny), h * (qz - qn * nz)
         u, v = b1 * (s11 * ax + s12 * bx + k1 * nx), b2 * (s12 * ax + s22 * bx + k2 * nx)
-        w[PLUS + t], w[MINUS + t] = u + v, u - v
+        plus, minus, q = u + v, u - v, h * (qx - qn * nx)
+        w[F00 + t], w[F10 + t], w[F01 + t], w[F11 + t] = plus - q, q - minus, minus + q, -plus - q
         u, v = b1 * (s11 * ay + s12 * by + k1 * ny), b2 * (s12 * ay + s22 * by + k2 * ny)
-        w[PLUS + Y + t], w[MINUS + Y + t] = u + v, u - v
+        plus, minus, q = u + v, u - v, h * (qy - qn * ny)
+        w[F00 + Y + t], w[F10 + Y + t], w[F01 + Y + t], w[F11 + Y + t] = plus - q, q - minus, minus + q, -plus - q
         u, v = b1 * (s11 * az + s12 * bz + k1 * nz), b2 * (s12 * az + s22 * bz + k2 * nz)
-        w[PLUS + Z + t], w[MINUS + Z + t] = u + v, u - v
+        plus, minus, q = u + v, u - v, h * (qz - qn * nz)
+        w[F00 + Z + t], w[F10 + Z + t], w[F01 + Z + t], w[F11 + Z + t] = plus - q, q - minus, minus + q, -plus - q
 
 
 @njit(**FAST)
@@ -171,13 +174,9 @@ def membrane_forces(x, f, history, cell, tangent, span, sheet, viscous, low, hig
             work += _shears(count, tangent, step, w)
             _pulls(count, law, glass, b1, b2, w)
             store(history, M_C11, MEMBRANE, i, start, count, w, C11)
-            add(f, i, start, count, w, PLUS, 1.0)
-            add(f, i, start, count, w, GLASS, -1.0)
-            add(f, i, start + ONE, count, w, MINUS, 1.0)
-            add(f, i, start + ONE, count, w, GLASS, 1.0)
+            add(f, i, start, count, w, F00)
+            add(f, i, start + ONE, count, w, F01)
             under, below = (f, i + ONE) if row + 1 < high else (carry, np.uint64(b))
-            add(under, below, start, count, w, MINUS, -1.0)
-            add(under, below, start, count, w, GLASS, 1.0)
-            add(under, below, start + ONE, count, w, PLUS, -1.0)
-            add(under, below, start + ONE, count, w, GLASS, -1.0)
+            add(under, below, start, count, w, F10)
+            add(under, below, start + ONE, count, w, F11)
     return work

@@ -1,19 +1,19 @@
 """The shell: four nodes with directors, one point, the flexural modulus along the fibres, no in-plane shear.
 
 A Reissner-Mindlin quadrilateral (T. Belytschko, J. Lin, C.-S. Tsay, Comput. Methods Appl. Mech. Eng. 42 (1984)
-225) whose rotations are the directors d of its nodes (J. Simo, D. Fox, ibid. 72 (1989) 267): unit vectors, normal to the
-flat reference. With t_a and d,a the gradients at the cell's middle, the convected curvatures and shears
+225) whose rotations are the directors d of its nodes (J. Simo, D. Fox, ibid. 72 (1989) 267): unit vectors, normal to
+the flat reference. With t_a and d,a the gradients at the cell's middle, the convected curvatures and shears
 
     B_ab = (t_a.d,b + t_b.d,a)/2,     s_a = edge.d / a   at the middle of each edge, d the mean of its ends
 
-do not change in a rigid motion. The law is the membrane's, with the flexural modulus E: over the thickness h its resultants
-grow, in the frame of each family (see `history`), by
+do not change in a rigid motion. The law is the membrane's, with the flexural modulus E: over the thickness h its
+resultants grow, in the frame of each family (see `history`), by
 
     d n = E h e11,     d m = D dk,     dk = g.dB g / l^2,     D = E h^3 / 12
 
 (linear in the distance from the middle surface, so the integral over the thickness is exact) and there is no s12.
-Their rate of work per reference area is J sum (n e11 + m dk)/dt. Transverse shear is elastic, between the shears of opposite
-edges even along the edge and linear across (K.-J. Bathe, E. Dvorkin, Int. J. Numer. Methods Eng. 21 (1985) 367):
+Their rate of work per reference area is J sum (n e11 + m dk)/dt. Transverse shear is elastic, even along the edges and
+linear between opposite ones (K.-J. Bathe, E. Dvorkin, Int. J. Numer. Methods Eng. 21 (1985) 367):
 
     U = A K/2 sum_a [s_a^2 + z_a^2/3],    s_a the mean of the two edges along a, z_a half their difference
 
@@ -136,7 +136,7 @@ def _resultants(count, law, w):
 
 @njit(**FAST)
 def _pulls(count, r1, r2, glass, w):
-    """Gradients by the edges (in place of them) and by the directors of corners 00, 10, 01, 11 (in DA .. DD)."""
+    """Forces on the corners 00, 10, 01, 11 (in EA .. ED) and pulls on their directors (in DA .. DD)."""
     for c in range(3):
         o = np.uint64(c * TILE)
         for t in range(count):
@@ -151,9 +151,10 @@ def _pulls(count, r1, r2, glass, w):
             fa, fb, fc, fd = r1 * (u1 + sa * da), r1 * (u1 + sb * db), r2 * (u2 + sc * dc), r2 * (u2 + sd * dd)
             qa, qb, qc, qd = 0.5 * sa * ea, 0.5 * sb * eb, 0.5 * sc * ec, 0.5 * sd * ed
             h = 0.25 * glass * w[AREA + t] * w[P + o + t]
-            w[EA + o + t], w[EB + o + t], w[EC + o + t], w[ED + o + t] = fa, fb, fc, fd
-            w[DA + o + t], w[DB + o + t] = qa + qc - v1 - v2 + h, qa + qd + v1 - v2 - h
-            w[DC + o + t], w[DD + o + t] = qb + qc - v1 + v2 - h, qb + qd + v1 + v2 + h
+            w[EA + o + t], w[EB + o + t] = fa + fc, fd - fa
+            w[EC + o + t], w[ED + o + t] = fb - fc, -fb - fd
+            w[DA + o + t], w[DB + o + t] = v1 + v2 - qa - qc - h, v2 - v1 - qa - qd + h
+            w[DC + o + t], w[DD + o + t] = v1 - v2 - qb - qc + h, -v1 - v2 - qb - qd - h
 
 
 @njit(**FAST)
@@ -184,24 +185,15 @@ def shell_forces(x, f, director, pull, history, cell, sheet, low, high, carry, b
             work += _resultants(count, law, w)
             store(history, S_C11, HISTORY - MEMBRANE, i, start, count, w, C11)
             _pulls(count, r1, r2, glass, w)
-            _spread(f, carry[:3], i, row + 1 < high, b, start, count, w)
-            add(pull, i, start, count, w, DA, -1.0)
-            add(pull, i, start + ONE, count, w, DC, -1.0)
-            under, below = (pull, i + ONE) if row + 1 < high else (carry[3:], np.uint64(b))
-            add(under, below, start, count, w, DB, -1.0)
-            add(under, below, start + ONE, count, w, DD, -1.0)
+            add(f, i, start, count, w, EA)
+            add(f, i, start + ONE, count, w, EC)
+            add(pull, i, start, count, w, DA)
+            add(pull, i, start + ONE, count, w, DC)
+            inside, below = row + 1 < high, i + ONE if row + 1 < high else np.uint64(b)
+            under = f if inside else carry[:3]
+            add(under, below, start, count, w, EB)
+            add(under, below, start + ONE, count, w, ED)
+            under = pull if inside else carry[3:]
+            add(under, below, start, count, w, DB)
+            add(under, below, start + ONE, count, w, DD)
     return work
-
-
-@njit(**FAST)
-def _spread(f, carry, i, inside, b, start, count, w):
-    """Spread the edges' forces on their nodes: dU/dx10 = a - d, x00 = -a - c, x01 = c - b, x11 = b + d."""
-    add(f, i, start, count, w, EA, 1.0)
-    add(f, i, start, count, w, EC, 1.0)
-    add(f, i, start + ONE, count, w, EB, 1.0)
-    add(f, i, start + ONE, count, w, EC, -1.0)
-    under, below = (f, i + ONE) if inside else (carry, np.uint64(b))
-    add(under, below, start, count, w, EA, -1.0)
-    add(under, below, start, count, w, ED, 1.0)
-    add(under, below, start + ONE, count, w, EB, -1.0)
-    add(under, below, start + ONE, count, w, ED, -1.0)
