@@ -21,12 +21,12 @@ from ddf.verify.scenes import entered_law, fabric_of, ply_scene
 
 CELLS, QUICK_CELLS = 12, 8
 """Diagonals of a cell along the fibres over the width."""
-HALTS_DEG, QUICK_HALTS_DEG = np.array([10.0, 20.0, 30.0]), np.array([20.0])
+HALTS_DEG, QUICK_HALTS_DEG = np.array([10.0, 20.0, 30.0]), np.array([10.0, 20.0])
 MASS_SCALING = 16.0
 DAMPING_1_S = 25.0
 HOURGLASS = (0.005, 0.05, 0.5)
 DEFAULT = 0.05
-FORCE_BOUND, ANGLE_BOUND_DEG = 0.1, 1.0
+FORCE_BOUND, ANGLE_BOUND_DEG = 0.05, 1.0
 
 
 def strip(
