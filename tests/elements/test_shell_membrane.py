@@ -24,7 +24,7 @@ def _placed(patch, f, turn):
 
 def _published(path, fibre, tangent):
     """Stress resultants (2, 2) in space at the end of a path of F (2, 2): the published equations, word by word."""
-    frames = [np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]).T for a in (fibre,)][0]
+    frames = np.array([[np.cos(fibre), -np.sin(fibre)], [np.sin(fibre), np.cos(fibre)]])  # columns: the families
     stress, strain = [np.zeros((2, 2)), np.zeros((2, 2))], [0.0, 0.0]
     gradients = list(path)
     for before, after in zip(gradients[:-1], gradients[1:], strict=True):
