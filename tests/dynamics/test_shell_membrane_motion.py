@@ -50,3 +50,16 @@ def test_threads_do_not_change_a_bit():
     sim.close()
     for a, b in zip(copied_state(first.state), second.state, strict=True):
         assert np.array_equal(a, b)
+
+
+def test_a_clamped_stack_keeps_its_energy_balance(make_scene):
+    """A shell-membrane ply between diaphragms that are pressed on it, with the contacts of any other ply."""
+    overrides = ("plies.0.formulation=shell-membrane", "plies.0.element_mm=10", "diaphragms.element_mm=10")
+    scene = make_scene("flat-stack", *overrides, "process.stages.0.duration_s=0.003", "solver.mass_scaling=100")
+    sim = Simulation(scene)
+    while sim.time < 0.0035:
+        sim.advance(50)
+    found = energies(scene.model, scene.state)
+    assert scene.state.springs.sum() > 0.0
+    assert sum(found.strain[1].values()) > 0.0
+    assert abs(found.error) < 0.01 * found.total_work
