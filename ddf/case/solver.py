@@ -45,6 +45,19 @@ class Solver(Section):
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."
     )
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
+    hourglass: float = Field(
+        default=0.05,
+        ge=0,
+        le=1,
+        description="Hourglass coefficient of shell-membrane plies (inferred): 1 is about full integration.",
+    )
+    fibre_damping: float = Field(
+        default=0.06,
+        ge=0,
+        le=1,
+        description="Damping of the fibres' stretching in shell-membrane plies, fraction of critical at the highest "
+        "frequency (inferred; linear bulk viscosity).",
+    )
     threads: int | None = Field(
         default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
     )

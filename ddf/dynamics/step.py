@@ -37,8 +37,12 @@ from ddf.elements.fold import fold_forces, fold_lattice_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
+from ddf.elements.shell_membrane import membrane, shell
+from ddf.elements.shell_membrane.history import HISTORY
+from ddf.elements.shell_membrane.rotations import turn_row
 from ddf.elements.squeeze import squeeze_forces
 from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
+from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
     CONTACT_DAMPING,
     DAMPING,
@@ -47,6 +51,7 @@ from ddf.model import (
     MASS_DAMPING,
     NORMAL_SPRING,
     PLY,
+    SHELL_PLY,
     SQUEEZE_WORK,
     TANGENTIAL_SPRING,
     TOOL_DAMPING,
@@ -58,6 +63,7 @@ from ddf.model import (
     TOOL_Z,
     fours,
     scalars,
+    shell_fields,
     vectors,
 )
 
@@ -78,6 +84,7 @@ class Work(NamedTuple):
     sums: np.ndarray  # (members, 4)
     carry: np.ndarray  # (blocks, widest + 2, PRESS) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
+    shell_carry: np.ndarray  # (6, blocks, widest) row of the next block, from a shell ply's cells: forces, pulls
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
     give: np.ndarray  # (members, PRESS)
@@ -109,7 +116,7 @@ def _weigh_row(f, gravity, mass):
 
 
 @njit(**FAST)
-def _internal(model, state, row, b, scratch):
+def _internal(model, state, work, row, b, scratch):
     """Gravity, internal forces and pressure of a block's rows; what was there is overwritten."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
@@ -134,6 +141,8 @@ def _internal(model, state, row, b, scratch):
             fold_lattice_forces(
                 x, f, triple1, triple2, sheet.a1, sheet.a2, sheet.hourglass, sheet.fold_radius, low, high, w
             )
+    elif sheet.kind == SHELL_PLY:
+        _shell_membrane(model, state, work.shell_carry, b, scratch)
     else:
         dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
@@ -142,6 +151,42 @@ def _internal(model, state, row, b, scratch):
             plate_forces(x, f, dx, dy, sheet.rigidity, low, high, w)
         if sheet.fold_radius > 0.0:
             fold_forces(x, f, dx, dy, sheet.hourglass, sheet.fold_radius, low, high, w)
+
+
+@njit(**FAST)
+def _shell_membrane(model, state, carry, b, scratch):
+    """Membrane, shell and folds of a block of a shell ply; what belongs to the next block's first row goes to carry."""
+    block = model.blocks[b]
+    sheet = model.sheets[block.sheet]
+    x, f, cell = vectors(state.x, sheet), vectors(state.f, sheet), scalars(model.cell, sheet)
+    past = shell_fields(state.history, sheet, HISTORY)
+    low, high = block.low, block.high
+    carry[:, b] = 0.0
+    done = membrane.membrane_forces(
+        x, f, past, cell, model.tangents[sheet.shear], TANGENT_SPAN, sheet, sheet.viscous / model.dt, low, high,
+        carry[:3], b, scratch,
+    )  # fmt: skip
+    if max(sheet.bend1, sheet.bend2) > 0.0:
+        director, pull = shell_fields(state.director, sheet, 3), shell_fields(state.pull, sheet, 3)
+        pull[:, low:high] = 0.0
+        done += shell.shell_forces(x, f, director, pull, past, cell, sheet, low, high, carry, b, scratch)
+    state.ledger[b, FIBRE_WORK] -= done
+    if sheet.fold_radius > 0.0:
+        w = scratch[: SCRATCH_ROWS * (sheet.cols + 2)].reshape((SCRATCH_ROWS, sheet.cols + 2))
+        triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
+        fold_lattice_forces(
+            x, f, triple1, triple2, sheet.a1, sheet.a2, sheet.hourglass, sheet.fold_radius, low, high, w
+        )
+
+
+@njit(**FAST)
+def _collect_shell(state, sheet, carry, low, b):
+    """Add what the block before carried over to a shell ply's block."""
+    f, pull = vectors(state.f, sheet), shell_fields(state.pull, sheet, 3)
+    for c in range(3):
+        for j in range(sheet.cols):
+            f[c, low, j] += carry[c, b - 1, j]
+            pull[c, low, j] += carry[3 + c, b - 1, j]
 
 
 @njit(inline="always")
@@ -263,6 +308,8 @@ def _collect(model, state, work, b):
                 if j1 > j0:
                     collect_row(f, press, buffer, i, j0, j1)
             index += 1
+    if sheet.kind == SHELL_PLY and block.low > 0:
+        _collect_shell(state, sheet, work.shell_carry, block.low, b)
 
 
 @njit(**FAST)
@@ -330,6 +377,11 @@ def _kick(model, state, b, damping, scratch):
             power += q
             if sheet.kind != PLY:
                 _drift_row(x[c, i], v[c, i], f[c, i], mass[i], dt)
+    if sheet.kind == SHELL_PLY and max(sheet.bend1, sheet.bend2) > 0.0:
+        director, spin = shell_fields(state.director, sheet, 3), shell_fields(state.spin, sheet, 3)
+        pull = shell_fields(state.pull, sheet, 3)
+        for i in range(block.low, block.high):
+            square += turn_row(director[:, i], spin[:, i], pull[:, i], mass[i], inverse[i], sheet.gyration, damping, dt)
     state.ledger[b, MASS_DAMPING] += 0.5 * square * (1.0 - damping * damping)
     if sheet.kind == PLY:
         state.ledger[b, FIBRE_WORK] -= 0.5 * damping * (damping * square + dt * power)
@@ -417,7 +469,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         row = schedule[n]
         b = draw(sync, base)
         while b < blocks:
-            _internal(model, state, row, b, work.scratch[member])
+            _internal(model, state, work, row, b, work.scratch[member])
             _layers(model, state, work, member, b, model.dt, reach)
             b = draw(sync, base)
         base += blocks + members

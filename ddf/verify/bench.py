@@ -81,7 +81,7 @@ def assemble(
     lines = [np.concatenate([np.diff(s.lines[0]), np.diff(s.lines[1])]) for s in sheets]
     model = Model(
         sheets=records, blocks=row_blocks(records), pairs=pairs, **_pools(sheets, records), lines=np.concatenate(lines),
-        shear_tables=tables, ogden=_terms(sheets), exposed=exposed,
+        shear_tables=tables, tangents=np.zeros((1, 1)), ogden=_terms(sheets), exposed=exposed,
         tool=tool.field.values if tool else np.zeros((2, 2, 2, 4), np.float32),
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
