@@ -113,15 +113,15 @@ def clear_buffer(buffer, span):
 
 
 @njit(**FAST)
-def collect_row(f, normal, buffer, i, a, b):
-    """Add columns a..b-1 of row i of a buffer (n, m, 4) to f (3, n, m) and to the normal forces (n, m)."""
+def collect_row(f, normal, share, buffer, i, a, b):
+    """Add columns a..b-1 of row i of a buffer (n, m, 4) to f (3, n, m), a share of the last to normal forces (n, m)."""
     n0 = normal[i]
     f0, f1, f2, row = f[0, i], f[1, i], f[2, i], buffer[i]
     for j in range(a, b):
         f0[j] += row[j, 0]
         f1[j] += row[j, 1]
         f2[j] += row[j, 2]
-        n0[j] += row[j, 3]
+        n0[j] += share * row[j, 3]
 
 
 @njit(**FAST)

@@ -233,11 +233,11 @@ def _along(row, x, y, z):
 
 
 @njit(**FAST)
-def settle_row(v, f, normal, press, mass, speed, keep, dt):
+def settle_row(v, f, normal, share, press, mass, speed, keep, dt):
     """Add the tool's forces to a row and let it act on the sum implicitly: f <- m (m + J)^-1 f; press is cleared.
 
     v, f (3, m); press (m, PRESS); mass (m,), 0 where held; normal (m,)
-    gathers the tool's normal forces [N]; keep: what mass
+    gathers a share of the tool's normal forces [N]; keep: what mass
     damping leaves of v. Returns the tool's further work and what was dissipated
     [N mm]: the viscous force and the change of f, times the mid-step velocity relative to the tool.
     """
@@ -258,7 +258,7 @@ def settle_row(v, f, normal, press, mass, speed, keep, dt):
             f[0, j], f[1, j], f[2, j] = fx, fy, fz
             h = 0.5 * dt / m
             x, y, z = fx - x, fy - y, fz - z  # what the tensor took
-            normal[j] += _along(press[j], x, y, z)
+            normal[j] += share * _along(press[j], x, y, z)
             work += z * speed * dt
             lost -= dt * (
                 (x + press[j, 9]) * (keep * v[0, j] + h * fx)

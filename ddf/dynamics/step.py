@@ -40,7 +40,7 @@ from ddf.elements.shear import shear_forces
 from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.shell_membrane.history import HISTORY
 from ddf.elements.shell_membrane.rotations import turn_row
-from ddf.elements.squeeze import squeeze_forces
+from ddf.elements.squeeze import SHARE, squeeze_forces
 from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
 from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
@@ -294,7 +294,10 @@ def _collect(model, state, work, b):
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     f, press = vectors(state.f, sheet), scalars(state.press, sheet)
-    press[block.low : block.high] = scalars(work.normal, sheet)[block.low : block.high]
+    normal = scalars(work.normal, sheet)
+    for i in range(block.low, block.high):
+        for j in range(sheet.cols):
+            press[i, j] += SHARE * (normal[i, j] - press[i, j])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
         if pair.master != block.sheet:
@@ -306,7 +309,7 @@ def _collect(model, state, work, b):
             for i in range(block.low, block.high):
                 j0, j1 = touched(span, i)
                 if j1 > j0:
-                    collect_row(f, press, buffer, i, j0, j1)
+                    collect_row(f, press, SHARE, buffer, i, j0, j1)
             index += 1
     if sheet.kind == SHELL_PLY and block.low > 0:
         _collect_shell(state, sheet, work.shell_carry, block.low, b)
@@ -328,7 +331,7 @@ def _settle_tool(model, state, work, row, b):
     for i in range(block.low, block.high):
         if work.pressed[i]:
             done, lost = settle_row(
-                v[:, i], f[:, i], normal[i], press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt
+                v[:, i], f[:, i], normal[i], SHARE, press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt
             )
             state.ledger[b, TOOL_WORK] += done
             state.ledger[b, TOOL_DAMPING] += lost

@@ -136,7 +136,7 @@ def table_energy(sine: np.ndarray, area: np.ndarray, table: np.ndarray) -> float
     """Sum of A W(s) [N mm] for sines s and areas A of one shape; the integral of the table's cubics."""
     s = np.abs(sine)
     width = table[-1, 0]
-    k = np.minimum((s / width).astype(np.int64), table.shape[0] - 2)
+    k = np.minimum((np.nan_to_num(s) / width).astype(np.int64), table.shape[0] - 2)
     u = s / width - k
     c = table[k]
     w = c[..., 4] + width * u * (c[..., 0] + u * (c[..., 1] / 2 + u * (c[..., 2] / 3 + u * c[..., 3] / 4)))

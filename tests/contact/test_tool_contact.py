@@ -147,7 +147,7 @@ def test_implicit_step_solves_its_equation_and_books_what_it_takes():
     total, work, lost = touch + others, 0.0, 0.0
     settled = others.copy()
     for i in range(x.shape[1]):
-        done, gone = settle_row(v[:, i], settled[:, i], np.zeros(4), tool.press[i], mass[i], speed, 1.0, dt)
+        done, gone = settle_row(v[:, i], settled[:, i], np.zeros(4), 1.0, tool.press[i], mass[i], speed, 1.0, dt)
         work, lost = work + done, lost + gone
     assert not tool.press.any()
     expected_lost = expected_work = 0.0
@@ -179,7 +179,7 @@ def test_a_node_pressed_on_the_platform_stays_there_however_stiff_it_is():
             tool.forces(x, v, others=others, mass=mass, dt=dt, z=-0.0)
             f = others.copy()
             for i in range(2):
-                settle_row(v[:, i], f[:, i], np.zeros(2), tool.press[i], mass[i], 0.0, 1.0, dt)
+                settle_row(v[:, i], f[:, i], np.zeros(2), 1.0, tool.press[i], mass[i], 0.0, 1.0, dt)
             v += dt * f / mass
             x = x + dt * v
             touched = touched or bool((x[2] < 0.75).any())
@@ -204,7 +204,7 @@ def test_energy_closes_when_a_cell_is_thrown_on_the_tool(height, sideways):
         tool.forces(x, v, others=others, mass=mass, dt=dt)
         f = others.copy()
         for i in range(2):
-            lost += settle_row(v[:, i], f[:, i], np.zeros(2), tool.press[i], mass[i], 0.0, 1.0, dt)[1]
+            lost += settle_row(v[:, i], f[:, i], np.zeros(2), 1.0, tool.press[i], mass[i], 0.0, 1.0, dt)[1]
         lost += tool.out[2] + tool.out[3]
         middle = v + 0.5 * dt * f / mass
         work += dt * (others * middle).sum()
