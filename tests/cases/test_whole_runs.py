@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import ddf.run
+import ddf.run.loop
 from ddf.case import load_case
 from ddf.cli import main
 from ddf.errors import UsageError
@@ -72,7 +72,7 @@ def test_finished_run_opens_as_arrays(whole, case):
 
 
 def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypatch):
-    monkeypatch.setattr(ddf.run, "REPORT_EVERY_S", 0.0)
+    monkeypatch.setattr(ddf.run.loop, "REPORT_EVERY_S", 0.0)
 
     def stop_at(share, number):
         def stop(progress):
