@@ -31,7 +31,7 @@ def run(
     quiet: bool,
     threads: int | None,
 ) -> None:
-    """Run a case and leave frames, tables, pictures and a report in a folder.
+    """Run a case (a file, or a shipped one by its name) and leave frames, tables, pictures and a report in a folder.
 
     Example: ddf run cases/tetrahedron-0-90-coarse.toml -o runs/first
     """
