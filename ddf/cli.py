@@ -32,6 +32,10 @@ class _Commands(click.Group):
             return super().invoke(ctx)
         except DdfError as error:
             fail(str(error), error.exit_code)
+        except RuntimeError as error:
+            if "cannot cache function" not in str(error):  # numba's, where ddf.kernel_cache has found no place
+                raise
+            fail("compiled kernels can be kept nowhere; set DDF_CACHE_DIR to a folder that can be written to", 1)
         except MemoryError:
             fail("out of memory; larger elements or fewer frames need less", 1)
         except KeyboardInterrupt:

@@ -9,7 +9,7 @@ from pathlib import Path
 from ddf.case import Case, resolved_toml
 from ddf.case.load import Source
 from ddf.errors import UnstableError
-from ddf.kernel_cache import warm_kernels
+from ddf.kernel_cache import cache_note, warm_kernels
 from ddf.net_run import run_net
 from ddf.output.checkpoint import CHECKPOINT, load_checkpoint
 from ddf.output.folder import RunFolder
@@ -53,7 +53,7 @@ def run_case(
     if case.model == "kinematic":
         net = run_net(case, folder, case_text=case_text, replace=force or resume)
         return RunResult(Path(folder), "finished", 0, 0.0, net.wall_s, plies=net.plies, notes=net.notes)
-    watch, warnings = Stopwatch(), list[str]()
+    watch, warnings = Stopwatch(), [f"note: {note}"] if (note := cache_note()) else list[str]()
     with Interrupt() as interrupt:
         RunFolder(folder).refuse(force=force, resume=resume)
         if not compiled:
