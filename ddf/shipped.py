@@ -12,7 +12,7 @@ from typing import Literal
 Kind = Literal["cases", "meshes"]
 
 SUFFIX: dict[Kind, str] = {"cases": ".toml", "meshes": ".step"}
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]*")  # a bare name: no folder, no suffix
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]{0,63}")  # a bare name: no folder, no suffix
 
 
 def shipped_folder(kind: Kind) -> Path:
@@ -37,3 +37,12 @@ def shipped_file(kind: Kind, name: str) -> Path | None:
         return None
     path = shipped_folder(kind) / f"{name}{SUFFIX[kind]}"
     return path if path.is_file() else None
+
+
+def file_or_shipped(kind: Kind, path: Path, name: str) -> Path:
+    """The path where it is a file, else that of the shipped file called `name`, else (there is none) the path."""
+    try:
+        there = path.is_file()
+    except (OSError, ValueError):  # too long a name, a zero byte in it
+        there = False
+    return path if there else shipped_file(kind, name) or path

@@ -20,7 +20,7 @@ from ddf.case.overrides import Override, apply_overrides, override_of
 from ddf.case.rules import key_problems
 from ddf.case.schema import Case
 from ddf.errors import CaseError, Fault
-from ddf.shipped import shipped_file, shipped_names
+from ddf.shipped import file_or_shipped, shipped_names
 
 MAX_BYTES = 1_000_000
 TOOL_SUFFIXES = (".step", ".stp", ".stl")
@@ -59,21 +59,11 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
 
 def load_source(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Case, Source]:
     """Do as `load_case` does, and return the source too, for what is found wrong with the case later."""
-    file = str(case_path(path))
+    file = str(file_or_shipped("cases", Path(path), str(path)))
     text = read_text(Path(file), file)
     raw, changes, faults = apply_overrides(parse_toml(text, file), overrides)
     source = Source(file, text, changes)
     return _build(raw, source, faults), source
-
-
-def case_path(path: str | Path) -> Path:
-    """The path itself where it is a file, else that of the shipped case of this name, if there is one."""
-    try:
-        if not Path(path).is_file():
-            return shipped_file("cases", str(path)) or Path(path)
-    except ValueError:  # a zero byte in it
-        pass
-    return Path(path)
 
 
 def case_from_dict(
@@ -174,9 +164,7 @@ def _with_tool_path(raw: dict[str, Any], folder: Path) -> tuple[dict[str, Any], 
     path = ("tool", "file")
     suffixes = ", ".join(TOOL_SUFFIXES)
     try:
-        found = (folder / name).resolve()
-        if not found.is_file():
-            found = shipped_file("meshes", name) or found
+        found = file_or_shipped("meshes", (folder / name).resolve(), name)
         exists = found.is_file()
     except (OSError, ValueError, RuntimeError):
         return raw, [Problem(path, f"{shown(name)} cannot be a file", suffixes)]
