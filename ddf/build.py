@@ -12,10 +12,12 @@ from scipy.ndimage import distance_transform_edt
 from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
 from ddf.contact.layers import UNKNOWN
-from ddf.contact.patch import patch_centres
+from ddf.contact.patch import edge_cover, patch_centres
 from ddf.contact.tool import FREE
 from ddf.dynamics import timestep
 from ddf.elements.bending import tangent_weights
+from ddf.elements.shell_membrane.history import HISTORY, M_C11, M_C22, S_C11, S_C22
+from ddf.elements.shell_membrane.rotations import normals
 from ddf.loads.path import LoadPath
 from ddf.materials import ogden, shear_law
 from ddf.mesh.diaphragm import DiaphragmMesh, mesh_diaphragm
@@ -31,9 +33,12 @@ from ddf.model import (
     PRESSURE_BOTTOM,
     PRESSURE_TOP,
     SHEET,
+    SHELL_PLY,
     SPRINGS,
     Model,
     State,
+    sheet_shells,
+    sheet_vectors,
 )
 from ddf.scene import Scene, SheetInfo
 
@@ -61,8 +66,9 @@ def build_scene(case: Case) -> Scene:
     tool_mesh, tool_field = (None, None) if case.tool is None else _tool(case.tool)
     rubber = hyperelastic_material(case, case.diaphragms.material)
     terms = rubber.abaqus_terms
-    sheets, laws, tangents = _sheets(case, stack, terms)
+    sheets, laws, tables, tangents = _sheets(case, stack, terms)
     scale, masses = _masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3, tangents)
+    _damp_fibres(case, sheets, masses, tangents)
     limit = _step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s
     pools = _pools(case, stack, sheets, masses)
@@ -74,7 +80,7 @@ def build_scene(case: Case) -> Scene:
         sheets=sheets, blocks=blocks, pairs=pairs, **pools,
         lines=np.concatenate([np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)])
         / case.diaphragms.pre_stretch,
-        shear_tables=laws, ogden=np.array(terms, dtype=float), exposed=exposed, tool=values,
+        shear_tables=laws, tangents=tables, ogden=np.array(terms, dtype=float), exposed=exposed, tool=values,
         tool_origin=np.zeros(3) if tool_field is None else np.asarray(tool_field.origin, dtype=float),
         tool_spacing=1.0 if tool_field is None else float(tool_field.spacing),
         tool_sheet=-1 if tool_field is None else 0, tool_offset=0.5 * stack.thickness[0],
@@ -179,10 +185,10 @@ def _masses(case: Case, stack: _Stack, density: float, tangents: list[float]) ->
     """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2]."""
     solver = case.solver
     scales = []
-    for ply, material, shear in zip(stack.plies, stack.materials, tangents, strict=True):
+    for number, (ply, material, shear) in enumerate(zip(stack.plies, stack.materials, tangents, strict=True)):
         areal = material.areal_density_gsm * TONNE_PER_GSM_MM2
         if solver.target_step_s is not None:
-            omega2 = _ply_omega2(case, ply, material, shear, areal)
+            omega2 = _ply_omega2(case, number, ply, material, shear, areal)
             step = solver.step_safety * timestep.damped_limit(math.sqrt(omega2), solver.contact_damping)
             scales.append(max(1.0, (solver.target_step_s / step) ** 2))
         else:
@@ -192,21 +198,43 @@ def _masses(case: Case, stack: _Stack, density: float, tangents: list[float]) ->
     return scales, [skin, *plies, skin]
 
 
-def _ply_omega2(case: Case, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
-    stiff = case.solver.contact_stiffness_N_mm3
-    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, ply.spacing, 2.0 * stiff, mass)
+def _ply_omega2(case: Case, number: int, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
+    """Bound of omega^2 of ply `number` of the case, of whichever formulation."""
+    contact = 2.0 * case.solver.contact_stiffness_N_mm3
+    if case.plies[number].formulation == "shell-membrane":
+        stiff, transverse = stiffest(material), material.transverse_shear_N_mm
+        return timestep.shell_membrane_omega2(stiff, shear, transverse, ply.spacing, contact, mass)
+    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, ply.spacing, contact, mass)
+
+
+def stiffest(material: WovenMaterial) -> float:
+    """Tensile stiffness of the stiffer family, membrane and shell together [N/mm]."""
+    flexural = 12.0 / material.thickness_mm**2
+    both = zip(material.membrane_modulus_N_mm, material.bending_rigidity_Nmm, strict=True)
+    return max(eh + flexural * d for eh, d in both)
+
+
+def _damp_fibres(case: Case, sheets: np.ndarray, masses: list[float], tangents: list[float]) -> None:
+    """Set the damping time 2 z/omega of shell plies, z of critical at the highest frequency of the ply by itself."""
+    for k, s in enumerate(sheets):
+        if s["kind"] == SHELL_PLY:
+            spacing = (float(s["a1"]), float(s["a2"]))
+            stiff = max(float(s[f"eh{f}"]) + 12.0 * float(s[f"bend{f}"]) / float(s["thickness"]) ** 2 for f in (1, 2))
+            omega2 = timestep.shell_membrane_omega2(stiff, 0.0, 0.0, spacing, 0.0, masses[k])
+            s["viscous"] = 2.0 * case.solver.fibre_damping / math.sqrt(omega2)
 
 
 def _sheets(case: Case, stack: _Stack, terms):
-    """SHEET records, the stacked shear tables and the largest shear tangent of each ply [N/mm]."""
+    """SHEET records, the stacked shear and tangent tables and the largest shear tangent of each ply [N/mm]."""
     count = len(stack.plies) + 2
     sheets = np.zeros(count, SHEET)
-    tables, tangents = [], []
-    node = 0
+    tables, slopes, tangents = [], [], []
+    node = shell = 0
     d = case.diaphragms
     for k in range(count):
         s = sheets[k]
         s["node"], s["thickness"] = node, stack.thickness[k]
+        s["squeeze"] = stack.thickness[k] if case.solver.in_plane_pressure else 0.0
         s["hourglass"] = 4.0 * ogden.initial_shear_modulus(terms) * d.thickness_mm
         if 0 < k < count - 1:
             ply, material = stack.plies[k - 1], stack.materials[k - 1]
@@ -224,7 +252,16 @@ def _sheets(case: Case, stack: _Stack, terms):
                 None if table is None else (table.angle_deg, table.normalised_shear_force_N_mm),
             )  # fmt: skip
             tables.append(shear_law.shear_table(angle, force))
+            slopes.append(shear_law.tangent_table(angle, force))
             tangents.append(shear_law.largest_tangent(angle, force))
+            if case.plies[k - 1].formulation == "shell-membrane":
+                s["kind"], s["shell"] = SHELL_PLY, shell
+                s["transverse"], s["glass"] = material.transverse_shear_N_mm, case.solver.hourglass
+                s["gyration"] = timestep.shell_gyration(
+                    stiffest(material), max(material.bending_rigidity_Nmm), material.transverse_shear_N_mm,
+                    material.thickness_mm, ply.spacing,
+                )  # fmt: skip
+                shell += int(s["rows"] * s["cols"])
         else:
             s["kind"], s["rows"], s["cols"] = DIAPHRAGM, *stack.diaphragm.x.shape[1:]
             s["face"] = PRESSURE_BOTTOM if k == 0 else PRESSURE_TOP
@@ -232,7 +269,7 @@ def _sheets(case: Case, stack: _Stack, terms):
             s["rigidity"] = ogden.bending_rigidity(terms, d.thickness_mm) if d.bending else 0.0
             s["fold_radius"] = d.thickness_mm + sum(m.thickness_mm for m in stack.materials)
         node += int(s["rows"] * s["cols"])
-    return sheets, np.array(tables), tangents
+    return sheets, np.array(tables), np.array(slopes), tangents
 
 
 def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents: list[float]) -> float:
@@ -241,8 +278,10 @@ def _step_limit(case: Case, stack: _Stack, terms, masses: list[float], tangents:
     stiff = solver.contact_stiffness_N_mm3
     limits = []
     for k, (ply, material) in enumerate(zip(stack.plies, stack.materials, strict=True)):
-        omega2 = _ply_omega2(case, ply, material, tangents[k], masses[k + 1])
+        omega2 = _ply_omega2(case, k, ply, material, tangents[k], masses[k + 1])
         damping = 2.0 * sum(_pair_damping(case, masses, k + 1, other) for other in (k, k + 2))
+        if case.plies[k].formulation == "shell-membrane":
+            damping += 2.0 * case.solver.fibre_damping * math.sqrt(omega2) * masses[k + 1]
         limits.append((math.sqrt(omega2), damping / masses[k + 1]))
     mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, d.thickness_mm)
     omega2 = timestep.diaphragm_omega2(
@@ -266,22 +305,24 @@ def corner_sum(cells: FloatArray) -> FloatArray:
 
 def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -> dict[str, np.ndarray]:
     """Node pools of the model: masses, areas, bars, cells, triples, spans."""
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
+    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
     spans, firsts, centres, weights, first = [], [], [], [], 0
     for k, s in enumerate(sheets):
         n, m = int(s["rows"]), int(s["cols"])
         zero = np.zeros((n, m))
         values = dict.fromkeys(names, zero)
-        if s["kind"] == PLY:
+        if s["kind"] != DIAPHRAGM:
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
+            values["cover"] = edge_cover(values["cell"])
             span = np.asarray(ply.row_span)
             held, exists = np.zeros((n, m), bool), ply.active
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
             values["area"], values["cell"] = corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
+            values["cover"] = np.ones((n, m))
             span = np.tile([0, m], (n, 1))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
@@ -340,13 +381,20 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray) -> State:
     nodes = (int(sheet["rows"]), int(sheet["cols"])) if model.tool_sheet >= 0 else (1, 1)
     anchors = np.zeros((*nodes, 5, 3))
     anchors[..., 0] = FREE
-    return State(
+    shells = model.sheets["kind"] == SHELL_PLY
+    size = int((model.sheets["rows"] * model.sheets["cols"])[shells].sum())
+    state = State(
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
         place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors,
-        tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
+        press=np.zeros(model.mass.size), tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
+        director=np.zeros(3 * size), spin=np.zeros(3 * size), pull=np.zeros(3 * size), history=np.zeros(HISTORY * size),
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
         clock=np.zeros(2),
     )  # fmt: skip
+    for k in np.flatnonzero(shells):
+        sheet_shells(model, state.history, int(k), HISTORY)[[M_C11, M_C22, S_C11, S_C22]] = 1.0
+        sheet_shells(model, state.director, int(k), 3)[:] = normals(sheet_vectors(model, x, int(k)))
+    return state
 
 
 def _depth_inside(ply: PlyMesh, points: FloatArray) -> FloatArray:
@@ -437,7 +485,7 @@ def _infos(case: Case, stack: _Stack, model: Model, scales: list[float]) -> tupl
         s = model.sheets[k]
         a, n = int(s["node"]), int(s["rows"] * s["cols"])
         mass = float(model.mass[a : a + n].sum())
-        scale = scales[k - 1] if s["kind"] == PLY else case.solver.diaphragm_mass_scaling
-        kind = "ply" if s["kind"] == PLY else "diaphragm"
+        scale = scales[k - 1] if s["kind"] != DIAPHRAGM else case.solver.diaphragm_mass_scaling
+        kind = "diaphragm" if s["kind"] == DIAPHRAGM else "ply"
         infos.append(SheetInfo(name, kind, stack.thickness[k], scale, mass / scale, mass - mass / scale, mesh))
     return tuple(infos)

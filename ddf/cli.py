@@ -14,6 +14,7 @@ from ddf import __version__
 from ddf.commands.check import check
 from ddf.commands.common import INTERRUPTED, fail
 from ddf.commands.compare import compare
+from ddf.commands.export import export
 from ddf.commands.init import init
 from ddf.commands.report import report
 from ddf.commands.run import run
@@ -52,8 +53,9 @@ def main() -> None:
     ddf check my-case.toml         what would run, without running it
     ddf run my-case.toml           run it; results go to runs/my-case
     ddf verify --quick             solve problems with known answers
+    ddf export fibres runs/my-case what the next program needs
     """  # noqa: D301 (click knows a paragraph that is not to be filled by this character)
 
 
-for _command in (run, check, init, schema, report, verify, compare, sweep):
+for _command in (run, check, init, schema, report, verify, compare, sweep, export):
     main.add_command(_command)

@@ -45,7 +45,9 @@ def describe_scene(scene: Scene) -> str:
     for ply in case.plies:
         law = woven_material(case, ply.material).shear_law
         why = "slope kept positive, so shear cannot localise" if law == "monotone" else "as entered, may localise"
-        lines.append(f"  {ply.name}: {ply.material} at {ply.orientation_deg:g} deg, {law} shear law ({why})")
+        lines.append(
+            f"  {ply.name}: {ply.formulation}, {ply.material} at {ply.orientation_deg:g} deg, {law} shear law ({why})"
+        )
     bending = "with" if case.diaphragms.bending else "without"
     lines.append(f"  diaphragms: Ogden membrane {bending} plate bending, pre-stretch {case.diaphragms.pre_stretch:g}")
     lines.append(f"  contact: {len(model.pairs)} pairs, {int(model.exposed.sum())} nodes followed; no self-contact")

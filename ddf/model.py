@@ -13,13 +13,18 @@ x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] w
 place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
                                      viscous normal force [N]
 slip           (2, P)                slip of its friction spring, contravariant components [grid units]
-tool_anchor    (n, m, 5, 3)          anchors of a node's and its cell's points on the tool, tool frame [mm]
+tool_anchor    (n, m, 5, 3)          anchors of the points of a node and its cell on the tool, tool frame [mm]
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
 row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)
 col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
 cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
 bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
 tension1, 2    pool (N,)             tension of these bars [N]
+press          pool (N,)             sum of the normal forces of all contacts on a node [N]
+director       pool (3 S,)           unit normals of the plies of shell-membrane cells; S nodes, `shell` the first of
+                                     a sheet; likewise spin, their angular velocities [1/s], and pull, the
+                                     gradients of the energy by them, sign changed [N mm]
+history        pool (19 S,)          what these plies' cells remember, see `elements.shell_membrane.history`
 step           dt                    one evaluation of all forces [s]
 ============== ===================== =========================================================================
 """
@@ -31,12 +36,23 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-PLY, DIAPHRAGM = 0, 1
+#: kinds of sheets; a SHELL_PLY is a ply of shell-membrane cells, a PLY one of the lattice
+PLY, DIAPHRAGM, SHELL_PLY = 0, 1, 2
 
 #: columns of the ledger: work done on a sheet, energy that left the sheets, and (FIBRE_WORK) work
-#: that fibre tension did on the plies' motion, per block of rows [N mm]
-(PRESSURE_WORK, TOOL_WORK, FRICTION, CONTACT_DAMPING, TOOL_FRICTION, TOOL_DAMPING, MASS_DAMPING, FIBRE_WORK) = range(8)
-LEDGER = 8
+#: that fibre tension did on the plies' motion, work of contact pressure on layers that thin, per block of rows [N mm]
+(
+    PRESSURE_WORK,
+    TOOL_WORK,
+    FRICTION,
+    CONTACT_DAMPING,
+    TOOL_FRICTION,
+    TOOL_DAMPING,
+    MASS_DAMPING,
+    FIBRE_WORK,
+    SQUEEZE_WORK,
+) = range(9)
+LEDGER = 9
 #: columns of the springs: energy stored now in the contacts of a block (normal, tangential; tool likewise)
 (NORMAL_SPRING, TANGENTIAL_SPRING, TOOL_NORMAL_SPRING, TOOL_TANGENTIAL_SPRING) = range(4)
 SPRINGS = 4
@@ -63,7 +79,14 @@ SHEET = np.dtype(
         ("thickness", np.float64),
         ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
         ("hourglass", np.float64),  # modulus 4 mu t of the diaphragms: hourglass strains, fold struts [N/mm]
+        ("squeeze", np.float64),  # thickness on which contact pressure acts in the plane, 0: on none [mm]
         ("fold_radius", np.float64),  # least radius of a fold [mm]
+        ("shell", np.int64),  # SHELL_PLY: first node in the pools of directors and histories
+        ("fibre", np.float64),  # angle of family 1 to the grid's first direction [rad]
+        ("transverse", np.float64),  # transverse shear stiffness [N/mm]
+        ("glass", np.float64),  # hourglass coefficient
+        ("gyration", np.float64),  # rotary inertia over mass [mm2]
+        ("viscous", np.float64),  # damping of the fibres' stretching over their stiffness [s]
     ],
     align=True,
 )
@@ -114,8 +137,10 @@ class Model(NamedTuple):
     weight: np.ndarray  # (4 N,) weights of the bars around a node in its tangents, see `bending.tangent_weights`
     lines: np.ndarray  # reference sizes of diaphragm cells: rows then cols [mm]
     shear_tables: np.ndarray  # (laws, intervals, 5)
+    tangents: np.ndarray  # (laws, intervals): h G [N/mm] over the shear angle, 0 .. `shear_law.TANGENT_SPAN`
     ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
     exposed: np.ndarray  # (P,) bool: slave nodes a pair has to follow
+    cover: np.ndarray  # (N,) share of contact stiffness that a master gives at a node: 0 on a ply's edges
     centre: np.ndarray  # (2 N,) int32: centre of the contact patch around a node
     tool: np.ndarray  # (nx, ny, nz, 4) float32 signed distance and gradient
     tool_origin: np.ndarray  # (3,)
@@ -139,8 +164,13 @@ class State(NamedTuple):
     place: np.ndarray
     slip: np.ndarray
     tool_anchor: np.ndarray
+    press: np.ndarray  # (N,) contact force on each node in the last step [N]
     tension1: np.ndarray  # (N,) tension of each bar, as the last step left it [N]
     tension2: np.ndarray
+    director: np.ndarray
+    spin: np.ndarray
+    pull: np.ndarray
+    history: np.ndarray
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
     clock: np.ndarray  # (2,): step number, time [s]
@@ -161,6 +191,13 @@ def scalars(pool, sheet):
 
 
 @njit(inline="always")
+def shell_fields(pool, sheet, count):
+    """Sheet's slice of a pool of `count` numbers a node of shell plies as (count, rows, cols)."""
+    n = sheet.rows * sheet.cols
+    return pool[count * sheet.shell : count * (sheet.shell + n)].reshape((count, sheet.rows, sheet.cols))
+
+
+@njit(inline="always")
 def fours(pool, sheet):
     """Sheet's slice of a pool of four numbers a node as (4, rows, cols)."""
     n = sheet.rows * sheet.cols
@@ -173,6 +210,13 @@ def sheet_vectors(model: Model, pool: np.ndarray, k: int) -> np.ndarray:
     n = int(s["rows"] * s["cols"])
     a = int(s["node"])
     return pool[3 * a : 3 * (a + n)].reshape(3, int(s["rows"]), int(s["cols"]))
+
+
+def sheet_shells(model: Model, pool: np.ndarray, k: int, count: int) -> np.ndarray:
+    """View of shell ply k in a pool of `count` numbers a node of such plies, shape (count, rows, cols)."""
+    s = model.sheets[k]
+    n, a = int(s["rows"] * s["cols"]), int(s["shell"])
+    return pool[count * a : count * (a + n)].reshape(count, int(s["rows"]), int(s["cols"]))
 
 
 def sheet_scalars(model: Model, pool: np.ndarray, k: int) -> np.ndarray:

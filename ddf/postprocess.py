@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ddf.build import build_scene
 from ddf.case import case_from_dict
 from ddf.errors import DdfError
@@ -14,6 +16,7 @@ from ddf.monitors.energy import Energies, energies
 from ddf.net_run import run_net
 from ddf.output.checkpoint import load_checkpoint
 from ddf.output.folder import RunFolder
+from ddf.output.reopen import formed_ply
 from ddf.output.results import open_run
 from ddf.output.snapshot import ply_surface, take_snapshot
 from ddf.output.tables import write_metrics, write_profiles, write_wrinkles
@@ -55,7 +58,7 @@ def finish_folder(
 
 def draw_pictures(scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrinkles: list[WrinkleResult]) -> None:
     """Draw the pictures of the scene's present state, and the energies from history.csv."""
-    from ddf.output.charts import draw_energies
+    from ddf.output.charts import draw_energies, draw_stages
     from ddf.output.figures import save_picture
     from ddf.output.plots import draw_distance, draw_formed, draw_outline, draw_shear
 
@@ -70,7 +73,13 @@ def draw_pictures(scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrin
         save_picture(out, f"outline-{surface.name}", draw_outline(surface, found, scene.tool_mesh))
         if scene.tool_mesh is not None:
             save_picture(out, f"distance-{surface.name}", draw_distance(surface))
-    save_picture(out, "energies", draw_energies(open_run(out.path).history()))
+    run, top = open_run(out.path), surfaces[-1].name
+    save_picture(out, "energies", draw_energies(run.history()))
+    if (out / f"{top}.pvd").is_file():
+        times = [time for time, _ in run.frames(top)]
+        ends = [(float(end), int(np.argmin(np.abs(np.array(times) - end)))) for end in scene.path.time[1:]]
+        frames = [(end, formed_ply(run, top, number)) for end, number in ends]
+        save_picture(out, "stages", draw_stages(scene.path, frames))
 
 
 def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
@@ -85,19 +94,23 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
     history = run.history()
     last = {name: values[-1] for name, values in history.items() if name.endswith(("_mJ", "_percent"))}
     summary = f"{stack} between two {case.diaphragms.thickness_mm:g} mm diaphragms; {tool}."
+    plies = run.metrics["plies"]
+    gaps = [ply["bridging_largest_mm"] for ply in plies if ply.get("bridging_largest_mm") is not None]
+    added = sum(sheet["added_mass_g"] for sheet in info["mesh"]["sheets"].values())
     key_numbers = {
+        "wrinkles": sum(ply["wrinkle_count"] for ply in plies),
+        "highest wrinkle": f"{max(ply['wrinkle_largest_amplitude_mm'] for ply in plies):.1f} mm",
+        "shear angle, 99 % of the area below": f"{max(ply['shear_p99_deg'] for ply in plies):.0f} deg",
+        **({"largest gap to the tool outside wrinkles": f"{max(gaps):.1f} mm"} if gaps else {}),
         "process time": f"{info['process_time_s']:.4g} s",
-        "steps": f"{info['step']} of {info['step_s']:.3g} s",
+        f"steps of {info['step_s']:.3g} s": info["step"],
         "wall time of the steps": f"{info['wall_s'].get('steps', 0.0):.0f} s on "
         + ("1 thread" if info["threads"] == 1 else f"{info['threads']} threads"),
-        "added mass": ", ".join(
-            f"{name} {sheet['added_mass_g']:.0f} g" for name, sheet in info["mesh"]["sheets"].items()
-            if sheet["added_mass_g"] > 0
-        ) or "none",
+        "added mass": f"{added:.0f} g",
     }  # fmt: skip
     report = Report(
         title=case.title or out.path.name, summary=summary, key_numbers=key_numbers,
-        plies=run.metrics["plies"], audit=info["audit"], energies=last, settings=run.resolved_text,
+        plies=plies, audit=info["audit"], energies=last, settings=run.resolved_text,
         versions={"ddf": info["ddf"], "Python": info["python"], **info["packages"]}, notes=notes,
     )  # fmt: skip
     write_report(out, report)

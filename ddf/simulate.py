@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ddf.contact.layers import NOWHERE, chunk_scratch
-from ddf.contact.tool import CARRY, PRESS
+from ddf.contact.tool import PRESS
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
 from ddf.dynamics.team import Team
 from ddf.elements import bending, shear
 from ddf.elements.rubber import cone_volume
+from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.tension import LINES
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
 from ddf.scene import Scene
@@ -32,15 +33,18 @@ def make_work(model: Model, members: int) -> Work:
         for family, key in enumerate(("cols", "rows")):
             count = int(model.sheets[k][key])
             bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
+    tiled = (bending, shear, membrane, shell)
     longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom = model.sheets[0]
     return Work(
-        scratch=np.zeros((members, max(SCRATCH_ROWS * widest, bending.SCRATCH, shear.SCRATCH))),
+        scratch=np.zeros((members, max(SCRATCH_ROWS * widest, *(part.SCRATCH for part in tiled)))),
         packed=np.zeros(4 * model.mass.size), rates=np.zeros(4 * model.mass.size),
+        nothing=np.zeros(model.mass.size), normal=np.zeros(model.mass.size),
         buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
-        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, CARRY)),
+        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, PRESS)),
+        shell_carry=np.zeros((6, model.blocks.size, widest)),
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
-        pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, CARRY)),
+        pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, PRESS)),
         sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
         rest=np.zeros(model.exposed.size, np.int8),
         bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),

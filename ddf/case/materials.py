@@ -42,6 +42,12 @@ class WovenMaterial(Section):
         description="Rigidity of the tows against bending in the ply's plane, per mm of width [N mm] "
         "(inferred: not measured, hence 0).",
     )
+    transverse_shear_N_mm: float = Field(
+        default=20.0,
+        gt=0,
+        le=1e6,
+        description="Transverse shear stiffness per mm of width [N/mm], K11 = K22; of shell-membrane plies only.",
+    )
     shear_law: Literal["published", "monotone"] = Field(
         default="monotone",
         description="'published' takes the shear curve as given, unstable wherever its slope is negative; "

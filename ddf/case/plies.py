@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -23,6 +23,11 @@ class Ply(Section):
         description="Angle of the first fibre family to the frame's x axis [deg]; the outline is not turned.",
     )
     element_mm: float = Field(default=2.0, ge=0.2, le=100, description="Element size along the fibres [mm].")
+    formulation: Literal["lattice", "shell-membrane"] = Field(
+        default="lattice",
+        description="'lattice': bars, cells and triples along the fibres, tension implicit; 'shell-membrane': "
+        "superimposed membrane and shell elements with a rate law, explicit and slow, to compare with.",
+    )
     size_mm: Annotated[tuple[Side, Side], Field(strict=False)] | None = Field(
         default=None,
         description="Rectangle [length along x, width along y] in mm. Either this or polygon_mm.",

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 
-DEFAULT_MASS_SCALING = 8.0
+DEFAULT_MASS_SCALING = 24.0
 
 
 class Solver(Section):
@@ -18,7 +18,7 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass (inferred); left out without target_step_s: 8. "
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 24. "
         "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
@@ -36,12 +36,28 @@ class Solver(Section):
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
     )
     contact_stiffness_N_mm3: float = Field(
-        default=1.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
+        default=3.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=15.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+        default=30.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+    )
+    in_plane_pressure: bool = Field(
+        default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."
     )
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
+    hourglass: float = Field(
+        default=0.05,
+        ge=0,
+        le=1,
+        description="Hourglass coefficient of shell-membrane plies (inferred): 1 is about full integration.",
+    )
+    fibre_damping: float = Field(
+        default=0.06,
+        ge=0,
+        le=1,
+        description="Damping of the fibres' stretching in shell-membrane plies, fraction of critical at the highest "
+        "frequency (inferred; linear bulk viscosity).",
+    )
     threads: int | None = Field(
         default=None, ge=1, le=1024, description="Threads; left out: as many as the machine has."
     )

@@ -14,6 +14,10 @@ from ddf.commands.common import MISSED, fail
 @click.option("--list", "show", is_flag=True, help="List the problems; solve none.")
 @click.option("--quick", is_flag=True, help="Coarser and shorter, same bounds.")
 @click.option("--element-mm", type=click.FloatRange(0.0, min_open=True), help="Element size  [default: the problem's]")
+@click.option(
+    "--formulation", type=click.Choice(["lattice", "shell-membrane"]), default="lattice", show_default=True,
+    help="Elements of the plies; only problems for it are solved.",
+)  # fmt: skip
 @click.option("--case", type=click.Path(path_type=Path), help="Take the materials of this case's first ply and skins.")
 @click.option("--threads", type=click.IntRange(1, 1024), default=1, show_default=True, help="Threads.")
 @click.option(
@@ -25,6 +29,7 @@ def verify(
     show: bool,
     quick: bool,
     element_mm: float | None,
+    formulation: str,
     case: Path | None,
     threads: int,
     output: Path,
@@ -38,13 +43,13 @@ def verify(
     from ddf.verify.report import text_table
     from ddf.verify.runner import solve_all, with_case_materials
 
-    chosen = choose_problems(problems)
+    chosen = choose_problems(problems, formulation)
     if show:
         width = max((len(problem.name) for problem in chosen), default=0)
         for problem in chosen:
             click.echo(f"{problem.name.ljust(width)}  {problem.title} [{problem.source}]")
         return
-    options = Options(quick=quick, element_mm=element_mm, threads=threads)
+    options = Options(quick=quick, element_mm=element_mm, formulation=formulation, threads=threads)
     if case is not None:
         options = with_case_materials(options, case)
     click.echo(f"{len(chosen)} problems; the kernels are compiled first where they are new ...", err=True)

@@ -5,7 +5,8 @@ tracks it, with the metric stiffened by |d n.S_aa|: in a fold as tight as the sh
 step would overshoot or have no answer, places then creep instead of jumping about. With N_k the weights of the
 surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x_k:
 
-    gap    g = sign r.n - offset;             penalty energy 1/2 K A g^2 where g < 0, damping C A g'
+    gap    g = sign r.n - offset;             damping C A g', penalty energy where g < 0:
+           U = A c (1/2 K g^2 + (H - 1)/2 K <-g - HARD offset>^2),  <.> positive part, c: cover
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
     slip   s = s^a S_a;                       friction spring of stiffness 0.3 K A, Coulomb limit mu N
     rates  of gap and slip are those on which the forces below do work: with w = v_s - (N_k + N_k,a r^a) v_k,
@@ -20,7 +21,10 @@ r x f = r^a S_a x f + d n x f, whether or not the projection has converged. With
 forces lie a gap apart and every contact would be a couple. Slip is kept as the history s^a and not as the way of
 the place from an anchor: in folds as tight as the contact distance places move where nothing slips.
 
-A node whose place lies outside the master's fabric is not in contact. One that is far away rests for as many
+A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge U
+fades to nothing (cover c, interpolated like the surface; -dU/dc c_a pushes the node off the edge): the corner of one
+ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
+30 m/s (seen). One that is far away rests for as many
 steps as it needs at the given reach to come near.
 Forces on the master go to one buffer a block of slave rows; the buffers are summed in a fixed order, so the
 result does not depend on the number of threads.
@@ -37,9 +41,15 @@ from numba import njit
 
 from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.contact.patch import first_order, interpolate, spread, weights
-from ddf.contact.quad import add_scaled, part, quad, store
+from ddf.contact.quad import add_scaled, part, quad, quad_with, store
 from ddf.elements.tension import FAST
 
+HARD, HARDENING = 0.2, 3.0
+"""Part of the offset beyond which the penalty is stiffer, and how much. Only where the tool bears the stack do sheets
+come so deep: tension of the fibres presses them on ridges and apexes with some MPa. There the tool's implicit
+contact adds to the mass that the stiffness acts on."""
+
+WHOLE_COVER = 1.0 - 1e-9  # weights add up to 1 but for rounding
 LONGEST_REST = 8
 UNKNOWN = 1.0e30  # gap of a node that rests
 DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost, not pressed
@@ -56,15 +66,17 @@ STRIDE = np.uint64(4 * CHUNK)
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
     AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip of the friction spring
+    COVER,  # share of the stiffness that the master's edge leaves
     BEFORE,  # depth of the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
     GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
     WX, WY, WZ, BU, BV,  # w, and n.(N_k,a v_k)
     OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
+    FN,  # normal force
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
-) = (np.uint64(k * CHUNK) for k in range(43))  # fmt: skip
-FIELDS = 43
+) = (np.uint64(k * CHUNK) for k in range(45))  # fmt: skip
+FIELDS = 45
 
 
 def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -101,25 +113,27 @@ def clear_buffer(buffer, span):
 
 
 @njit(**FAST)
-def collect_row(f, buffer, i, a, b):
-    """Add columns a..b-1 of row i of a buffer (n, m, 4) to f (3, n, m)."""
+def collect_row(f, normal, buffer, i, a, b):
+    """Add columns a..b-1 of row i of a buffer (n, m, 4) to f (3, n, m) and to the normal forces (n, m)."""
+    n0 = normal[i]
     f0, f1, f2, row = f[0, i], f[1, i], f[2, i], buffer[i]
     for j in range(a, b):
         f0[j] += row[j, 0]
         f1[j] += row[j, 1]
         f2[j] += row[j, 2]
+        n0[j] += row[j, 3]
 
 
 @njit(**FAST)
-def pack_rows(x, packed, low, high):
-    """Rows low..high-1 of x (3, n, m) as (x, y, z, 0) into packed (n, m, 4)."""
+def pack_rows(x, cover, packed, low, high):
+    """Rows low..high-1 of x (3, n, m) and of cover (n, m) as (x, y, z, cover) into packed (n, m, 4)."""
     for i in range(low, high):
-        x0, x1, x2, row = x[0, i], x[1, i], x[2, i], packed[i]
+        x0, x1, x2, c, row = x[0, i], x[1, i], x[2, i], cover[i], packed[i]
         for j in range(x0.shape[0]):
             row[j, 0] = x0[j]
             row[j, 1] = x1[j]
             row[j, 2] = x2[j]
-            row[j, 3] = 0.0
+            row[j, 3] = c[j]
 
 
 @njit(**FAST)
@@ -231,6 +245,10 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         w[NY + t] = ny
         w[NZ + t] = nz
         w[D + t] = d
+        cover = min(1.0, max(0.0, surface[k + THREE]))
+        w[COVER + t] = cover
+        w[AREA + t] *= cover
+        w[WHOLE + t] *= cover
         w[GAP + t] = sign * d - offset
         w[GUU + t] = guu
         w[GUV + t] = guv
@@ -253,7 +271,7 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
         touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
         touches = touches and abs(w[DU + t]) < FARTHEST and abs(w[DV + t]) < FARTHEST
         i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
-        if touches and cell[np.uint64(i), np.uint64(j)] > 0.0:
+        if touches and w[COVER + t] > 0.0 and cell[np.uint64(i), np.uint64(j)] > 0.0:
             touching += 1
             continue
         if w[BEFORE + t] > 0.0:
@@ -271,7 +289,7 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
 
 
 @njit(**FAST)
-def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
+def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
     """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
     inverse_dt = 1.0 / dt
@@ -282,7 +300,10 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         wx, wy, wz = w[WX + t], w[WY + t], w[WZ + t]
         k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
         rate = sign * (nx * wx + ny * wy + nz * wz)
-        spring = -k * w[GAP + t]
+        depth = max(0.0, -w[GAP + t])
+        excess = max(0.0, depth - hard)
+        spring = k * (depth + (HARDENING - 1.0) * excess)
+        stored = 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
         fn = max(0.0, spring - c * rate)
         # slip rate with lower, then upper components; the spring's slip if nothing gave way
         ru = wx * ux + wy * uy + wz * uz + d * w[BU + t]
@@ -302,7 +323,7 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if share < 1.0 else 1.0
         w[SU + t] = keep * tu
         w[SV + t] = keep * tv
-        normal += k * w[GAP + t] * w[GAP + t]
+        normal += stored
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
         viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
@@ -310,29 +331,38 @@ def _press(w, surface, count, sign, mu, stiffness, damping, slow, dt):
         across = ou * (guu * tu + guv * tv) + ov * (guv * tu + gvv * tv)
         rubbed += 0.5 * kt * (1.0 - keep) * (across + keep * stretch2) - dt * viscous
         opened = stiffness * (w[WHOLE + t] - w[AREA + t]) if w[BEFORE + t] > 0.0 else 0.0
-        rubbed += 0.5 * TANGENTIAL * opened * (ou * (guu * ou + guv * ov) + ov * (guv * ou + gvv * ov))
+        rubbed += 0.5 * TANGENTIAL * opened * across
         # the spring's force is taken to act through all of the step in which contact begins or ends
-        before, now = w[BEFORE + t], max(0.0, -w[GAP + t])
-        damped -= 0.5 * opened * before * (rate - before * inverse_dt)
-        begun = k if before == 0.0 else 0.0
-        damped -= 0.5 * begun * now * (rate + now * inverse_dt)
+        before = w[BEFORE + t]
+        more = max(0.0, before - hard)
+        held_before = opened * (before + (HARDENING - 1.0) * more)
+        left = 0.5 * opened * (before * before + (HARDENING - 1.0) * more * more)
+        damped += left * inverse_dt - 0.5 * held_before * rate
+        begun = 1.0 if before == 0.0 else 0.0
+        damped -= begun * (0.5 * spring * rate + stored * inverse_dt)
         # the viscous force of the last step worked on the mean of the rates before and after it
         damped -= 0.5 * w[OLD_DRAG + t] * (w[OLD_RATE + t] + rate)
         w[RATE + t] = rate
         w[DRAG + t] = fn - spring if w[AREA + t] > 0.0 else 0.0
+        # off the master's edge, where its cover is less than whole
+        slope = -stored / w[COVER + t] if w[COVER + t] < WHOLE_COVER and w[AREA + t] > 0.0 else 0.0
+        eu, ev = slope * surface[FOUR * t + STRIDE + THREE], slope * surface[FOUR * t + STRIDE + STRIDE + THREE]
+        cu, cv = (gvv * eu - guv * ev) * inv, (guu * ev - guv * eu) * inv
+        tx, ty, tz = tx + cu * ux + cv * vx, ty + cu * uy + cv * vy, tz + cu * uz + cv * vz
         fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
         cu = d * (tx * ux + ty * uy + tz * uz)
         cv = d * (tx * vx + ty * vy + tz * vz)
         eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
         du, dv = w[DU + t], w[DV + t]
+        w[FN + t] = fn
         w[FX + t], w[FY + t], w[FZ + t] = fx, fy, fz
         w[GX + t], w[GY + t], w[GZ + t] = eu * nx - du * fx, eu * ny - du * fy, eu * nz - du * fz
         w[HX + t], w[HY + t], w[HZ + t] = ev * nx - dv * fx, ev * ny - dv * fy, ev * nz - dv * fz
-    return 0.5 * normal, 0.5 * tangential, rubbed, dt * damped
+    return normal, 0.5 * tangential, rubbed, dt * damped
 
 
 @njit(**FAST)
-def _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols):
+def _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols):
     """Add the forces of the nodes that touch to the slave and to the master's buffer; store their slips."""
     stride = FOUR * cols
     for t in range(count):
@@ -344,13 +374,14 @@ def _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols):
         place[3, node] = w[RATE + t]
         place[4, node] = w[DRAG + t]
         fx, fy, fz = w[FX + t], w[FY + t], w[FZ + t]
+        normal[node] += w[FN + t]
         f[0, node] += fx
         f[1, node] += fy
         f[2, node] += fz
         a, b = weights(w[TU + t]), weights(w[TV + t])
         along_u = quad(w[GX + t], w[GY + t], w[GZ + t])
         along_v = quad(w[HX + t], w[HY + t], w[HZ + t])
-        spread(buffer, np.uint64(patch[0, t]), stride, a, b, quad(-fx, -fy, -fz), along_u, along_v)
+        spread(buffer, np.uint64(patch[0, t]), stride, a, b, quad_with(-fx, -fy, -fz, w[FN + t]), along_u, along_v)
         p, q = patch[1, t], patch[2, t]
         span[p, 0] = min(span[p, 0], q - 1)
         span[p, 1] = max(span[p, 1], q + 2)
@@ -358,8 +389,8 @@ def _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols):
 
 @njit(**FAST)
 def _chunk(
-    w, surface, patch, nodes, count, x, v, f, area, y, rates, cell, place, slip, rest, buffer, span, pair, reach, dt,
-    out,
+    w, surface, patch, nodes, count, x, v, f, normal, area, y, rates, cell, place, slip, rest, buffer, span, pair,
+    reach, dt, out,
 ):  # fmt: skip
     """All passes over one chunk; arguments as in `layer_forces`, grids of nodes and quads made flat."""
     n_rows, n_cols = cell.shape
@@ -370,20 +401,23 @@ def _chunk(
     if _settle(w, nodes, count, place, slip, rest, cell, deepest, 1.0 / reach) > 0:
         _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
-        sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, pair.damping, slow, dt)
+        hard = HARD * pair.offset
+        sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, hard, pair.damping, slow, dt)
         for k in range(4):
             out[k] += sums[k]
-        _scatter(w, patch, nodes, count, f, place, slip, buffer, span, cols)
+        _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)
 
 
 @njit(**FAST)
 def layer_forces(
-    xs, vs, fs, area, xm, vm, cell, centre, place, slip, rest, buffer, span, pair, reach, dt, low, high, scratch, out
-):
+    xs, vs, fs, normal, area, xm, vm, cell, centre, place, slip, rest, buffer, span, pair, reach, dt, low, high,
+    scratch, out,
+):  # fmt: skip
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
-    xs, vs, fs (3, n, m) slave; xm, vm (N, M, 4) master as from `pack_rows`; area (n, m) [mm2]; cell (N, M) area of
-    the master's cells; centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
+    xs, vs, fs (3, n, m) slave; normal (n, m) gathers its normal forces [N]; xm, vm (N, M, 4) master as from
+    `pack_rows`, vm with zeros for the cover; area (n, m) [mm2]; cell (N, M) area of the master's cells;
+    centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
     of the last step; slip (2, n, m) [grid units]; both updated; rest (n, m) int8: steps to rest, negative for nodes
     that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
     step [mm]; scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
@@ -392,7 +426,7 @@ def layer_forces(
     size = xs.shape[1] * xs.shape[2]
     x, v, f = xs.reshape((3, size)), vs.reshape((3, size)), fs.reshape((3, size))
     place, slip = place.reshape((5, size)), slip.reshape((2, size))
-    rest, area = rest.reshape(size), area.reshape(size)
+    rest, area, normal = rest.reshape(size), area.reshape(size), normal.reshape(size)
     y, rates, forces = xm.reshape(4 * cell.size), vm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
     w, surface, patch, nodes = scratch
     node, end = np.uint64(low * xs.shape[2]), np.uint64(high * xs.shape[2])
@@ -400,6 +434,6 @@ def layer_forces(
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w, surface, patch, nodes, t, x, v, f, area, y, rates, cell, place, slip, rest, forces, span, pair,
-                reach, dt, out,
+                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, cell, place, slip, rest, forces, span,
+                pair, reach, dt, out,
             )  # fmt: skip

@@ -94,6 +94,12 @@ def spread(buffer, k, stride, a, b, value, along_u, along_v):
     _add_row(buffer, k, b, add_scaled(a[2], value, scaled(a[5], along_u)), scaled(a[2], along_v))
 
 
+def edge_cover(cell: NDArray[np.float64]) -> NDArray[np.float64]:
+    """1 at nodes amid four cells that exist, else 0; cell (n, m) areas, last row and column empty."""
+    p = np.pad(cell > 0.0, ((1, 0), (1, 0)))
+    return (p[1:, 1:] & p[:-1, 1:] & p[1:, :-1] & p[:-1, :-1]).astype(np.float64)
+
+
 def patch_centres(exists: NDArray[np.bool_]) -> NDArray[np.int32]:
     """For each node the centre (i, j) of the 3 x 3 patch to use around it, (n, m, 2); -1 where there is none.
 

@@ -75,6 +75,19 @@ def quad(typing, x, y, z):
 
 
 @intrinsic
+def quad_with(typing, x, y, z, w):
+    """(x, y, z, w)."""
+
+    def build(context, builder, signature, args):
+        value = ir.Constant(VECTOR, [0.0] * 4)
+        for k in range(4):
+            value = builder.insert_element(value, args[k], ir.Constant(ir.IntType(32), k))
+        return value
+
+    return QUAD(types.float64, types.float64, types.float64, types.float64), build
+
+
+@intrinsic
 def scaled(typing, number, value):
     """Return number * value."""
 

@@ -1,14 +1,15 @@
 """Contact of a diaphragm with the rigid tool and the platform around it, implicit in time.
 
-The platform is met by the nodes (d = z, n = e_z), the tool by 2 x 2 points a cell at its quarters, so that no ridge
-passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and gradient n is
-pushed by
+The platform is met by the nodes (d = z, n = e_z), the tool by nodes, middles of edges and centres of cells, so that
+no ridge passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and
+gradient n is pushed by
 
-    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset,
+    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
 
-never pulled, and held by Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the node's
-area or a quarter of the cell's; dt K v is the spring's force at the place that the point is moving to. The force goes
-to the node, or to the cell's four with the point's bilinear weights N_i, and with it the tensor
+(v*: the velocity at the end of the step without the tool: by then it would still be pushed), and held by
+Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v
+is the spring's force at the place that the point is moving to. The force goes to the node, or to the cell's four
+with the point's bilinear weights N_i, and with it the tensor
 
     J_i = N_i (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
 
@@ -18,8 +19,9 @@ entries are positive), so the tool, however stiff, sets no limit to the step: wi
 leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
 forces is dissipation, booked with the mid-step velocity.
 
-The last row of a block of cells belongs to the next block: it goes to `carry`, which is added later in a fixed
-order. A cell found far from the tool does not look at it for as many steps as it needs at the given reach to come near.
+Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
+to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not
+look at it for as many steps as it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -33,26 +35,26 @@ from ddf.elements.tension import FAST
 FREE = 1.0e30
 LONGEST_SLEEP = 16
 
-#: columns of `press`: tensor J (xx, yy, zz, xy, xz, yz) [tonne] and viscous force of the tool [N] on each node
-PRESS = 9
-CARRY = 3 + PRESS  # force and `press` of the row that belongs to the next block
+#: columns of `press`, what the tool does to each node: force [N], tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous
+#: part of the force [N]
+PRESS = 12
 
 
 @njit(inline="always")
-def _held(p, anchor, nx, ny, nz):
-    """Squared length of the friction spring along the surface."""
+def _held(p, v, dt, anchor, nx, ny, nz):
+    """Stretches of the friction spring along the surface, now and in the last step, multiplied."""
     x, y, z = p[0] - anchor[0], p[1] - anchor[1], p[2] - anchor[2]
-    s = x * nx + y * ny + z * nz
-    return x * x + y * y + z * z - s * s
+    ox, oy, oz = x - dt * v[0], y - dt * v[1], z - dt * v[2]
+    return x * ox + y * oy + z * oz - (x * nx + y * ny + z * nz) * (ox * nx + oy * ny + oz * nz)
 
 
 @njit(**FAST)
-def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
-    """Force, tensor and viscous force of one contact point, into give (12,), the order of CARRY; returns its gap.
+def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
+    """What one contact point does, into give (PRESS,); returns whether it touches.
 
-    p, v: position and velocity relative to the tool; d, n: distance and normal there; k [N/mm], c [N s/mm]; updates
-    its anchor and the energies out (4,): normal spring, tangential spring, friction loss, loss where contact begins
-    or ends [N mm].
+    p, v, ahead: position, velocity, and velocity at the end without the tool, relative to the tool; d, n: distance
+    and normal there; k [N/mm], c [N s/mm]; updates its anchor and the energies out (4,): normal spring, tangential
+    spring, friction loss, loss where contact begins or ends [N mm].
     """
     near = d - offset
     nx, ny, nz = n
@@ -60,15 +62,16 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     if near >= 0.0:
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
-            out[2] += 0.5 * TANGENTIAL * k * _held(p, anchor, nx, ny, nz)
+            out[2] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
             out[3] -= 0.5 * k * before * (dt * rate - before)
         anchor[0] = FREE
-        return near
+        return False
     px, py, pz = p
     c += dt * k
     inertia = dt * c
     spring = -k * near
-    normal = max(0.0, spring - c * rate)
+    pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
+    normal = spring - c * rate if pushed else 0.0
     out[0] -= 0.5 * spring * near
     if anchor[0] >= FREE:
         anchor[0], anchor[1], anchor[2] = px, py, pz
@@ -79,7 +82,7 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
     k, c = TANGENTIAL * k, TANGENTIAL * c
     tx, ty, tz = -k * sx - c * vx, -k * sy - c * vy, -k * sz - c * vz
-    limit = mu * normal
+    limit = mu * max(0.0, normal)
     share = coulomb(length(tx, ty, tz), limit)
     tx, ty, tz = tx * share, ty * share, tz * share
     stretch = length(sx, sy, sz)
@@ -92,7 +95,7 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
     out[2] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
     along = inertia * TANGENTIAL * share
-    across = (inertia if normal > 0.0 else 0.0) - along
+    across = (inertia if pushed else 0.0) - along
     viscous = normal - spring
     give[0], give[1], give[2] = normal * nx + tx, normal * ny + ty, normal * nz + tz
     give[3], give[4], give[5] = along + across * nx * nx, along + across * ny * ny, along + across * nz * nz
@@ -102,29 +105,49 @@ def _point(p, v, d, n, offset, k, c, mu, dt, anchor, out, give):
         viscous * ny + ty + held * sy,
         viscous * nz + tz + held * sz,
     )
-    return near
+    return True
 
 
 @njit(**FAST)
-def _put(f, press, i, j, weight, give):
-    """Add a point's share to node (i, j) of f (3, n, m) and press (n, m, 9)."""
-    for c in range(3):
-        f[c, i, j] += weight * give[c]
+def _put(row, weight, give):
+    """Add a point's share to a node's row of press (PRESS,)."""
     for c in range(PRESS):
-        press[i, j, c] += weight * give[3 + c]
+        row[c] += weight * give[c]
+
+
+@njit(inline="always")
+def _mean(a, c, i, k, j, l, r, s):
+    """Component c of a (3, n, m) at the place (r, s) between rows i, k and columns j, l."""
+    return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, l]) + r * ((1 - s) * a[c, k, j] + s * a[c, k, l])
+
+
+@njit(inline="always")
+def _push(f, inverse, c, i, k, j, l, r, s):
+    """The same of f / m."""
+    return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, l] * inverse[i, l]) + r * (
+        (1 - s) * f[c, k, j] * inverse[k, j] + s * f[c, k, l] * inverse[k, l]
+    )
+
+
+@njit(inline="always")
+def _dual(d, j):
+    """Length that line j of a grid stands for, from its cells' sizes d."""
+    return 0.5 * ((d[j - 1] if j > 0 else 0.0) + (d[j] if j < d.shape[0] else 0.0))
 
 
 @njit(**FAST)
 def tool_forces(
-    x, v, f, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors, sleep,
-    low, high, out, give,
+    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors,
+    sleep, low, high, out, give,
 ):  # fmt: skip
-    """Add the forces of the nodes and cells of rows low..high-1; returns the tool's work [N mm], and if carry is used.
+    """Gather what the tool does to nodes and cells of rows low..high-1; returns its work [N mm], and if carry is used.
 
-    x, v, f (3, n, m); press (n, m, 9), carry (m + 2, 12): see PRESS, CARRY; pressed (n,) bool: rows of press in use;
-    area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm]; law = (offset, stiffness, damping, friction);
-    motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm]; anchors (n, m, 5, 3): of the
-    node, of the cell's points; sleep (n, m) int16 of the cells; out (4,) as in `_point`; give (12,) scratch.
+    x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
+    pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
+    law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a point can go
+    in a step [mm]; anchors (n, m, 5, 3): of the node on the platform, then of the node, the
+    middles of the edges along columns and rows, and the centre on the tool; sleep (n, m) int16; out (4,)
+    as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
     z, speed = motion
@@ -137,90 +160,110 @@ def tool_forces(
                 continue
             p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
             u = (v[0, i, j], v[1, i, j], v[2, i, j] - speed)
+            h = dt * inverse[i, j]
+            ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
             a, up = area[i, j], (0.0, 0.0, 1.0)
-            near = _point(p, u, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give)
-            if near < 0.0:
+            if _point(p, u, ahead, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give):
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(f, press, i, j, 1.0, give)
-        k = i + 1
-        if k == n:
-            break
-        for j in range(m - 1):
+                _put(press[i, j], 1.0, give)
+        k = min(i + 1, n - 1)
+        for j in range(m):
             if sleep[i, j] > 0:
                 sleep[i, j] -= 1
                 continue
-            a = 0.25 * dx[i] * dy[j]
+            l = min(j + 1, m - 1)
             nearest = 1.0e3
             for q in range(4):
-                r = 0.25 if q < 2 else 0.75
-                s = 0.25 if q % 2 == 0 else 0.75
-                w00, w10, w01, w11 = (1 - r) * (1 - s), r * (1 - s), (1 - r) * s, r * s
+                if (q >= 2 and k == i) or (q % 2 == 1 and l == j):
+                    continue
+                r = 0.0 if q < 2 else 0.5
+                s = 0.0 if q % 2 == 0 else 0.5
                 p = (
-                    w00 * x[0, i, j] + w10 * x[0, k, j] + w01 * x[0, i, j + 1] + w11 * x[0, k, j + 1],
-                    w00 * x[1, i, j] + w10 * x[1, k, j] + w01 * x[1, i, j + 1] + w11 * x[1, k, j + 1],
-                    w00 * x[2, i, j] + w10 * x[2, k, j] + w01 * x[2, i, j + 1] + w11 * x[2, k, j + 1] - z,
+                    _mean(x, 0, i, k, j, l, r, s),
+                    _mean(x, 1, i, k, j, l, r, s),
+                    _mean(x, 2, i, k, j, l, r, s) - z,
                 )
                 d, nx, ny, nz = sample(tool, origin, spacing, p[0], p[1], p[2])
                 nearest = min(nearest, d - offset)
                 if d >= offset and anchors[i, j, 1 + q, 0] >= FREE:
                     continue
+                a = 0.25 * (dx[i] if q >= 2 else _dual(dx, i)) * (dy[j] if q % 2 == 1 else _dual(dy, j))
                 u = (
-                    w00 * v[0, i, j] + w10 * v[0, k, j] + w01 * v[0, i, j + 1] + w11 * v[0, k, j + 1],
-                    w00 * v[1, i, j] + w10 * v[1, k, j] + w01 * v[1, i, j + 1] + w11 * v[1, k, j + 1],
-                    w00 * v[2, i, j] + w10 * v[2, k, j] + w01 * v[2, i, j + 1] + w11 * v[2, k, j + 1] - speed,
+                    _mean(v, 0, i, k, j, l, r, s),
+                    _mean(v, 1, i, k, j, l, r, s),
+                    _mean(v, 2, i, k, j, l, r, s) - speed,
                 )
-                near = _point(
-                    p, u, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q], out, give
+                ahead = (
+                    u[0] + dt * _push(f, inverse, 0, i, k, j, l, r, s),
+                    u[1] + dt * _push(f, inverse, 1, i, k, j, l, r, s),
+                    u[2] + dt * _push(f, inverse, 2, i, k, j, l, r, s),
                 )
-                if near >= 0.0:
+                if not _point(
+                    p, u, ahead, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q],
+                    out, give,
+                ):  # fmt: skip
                     continue
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(f, press, i, j, w00, give)
-                _put(f, press, i, j + 1, w01, give)
+                _put(press[i, j], (1 - r) * (1 - s), give)
+                if s > 0.0:
+                    _put(press[i, l], (1 - r) * s, give)
+                if r == 0.0:
+                    continue
                 if k < high:
                     pressed[k] = True
-                    _put(f, press, k, j, w10, give)
-                    _put(f, press, k, j + 1, w11, give)
+                    _put(press[k, j], r * (1 - s), give)
+                    _put(press[k, l], r * s, give)
                 else:
                     carried = True
-                    for c in range(CARRY):
-                        carry[j, c] += w10 * give[c]
-                        carry[j + 1, c] += w11 * give[c]
+                    _put(carry[j], r * (1 - s), give)
+                    _put(carry[l], r * s, give)
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
     return work, carried
 
 
-@njit(**FAST)
-def settle_row(v, f, press, mass, speed, dt):
-    """Forces of a row as the implicit tool lets them act: f <- m (m + J)^-1 f; press is cleared.
+@njit(inline="always")
+def _along(row, x, y, z):
+    """The tool's force on a node, with what the tensor took (x, y, z), along the force of its springs [N]."""
+    a, b, c = row[0] - row[9], row[1] - row[10], row[2] - row[11]
+    along = (row[0] + x) * a + (row[1] + y) * b + (row[2] + z) * c
+    return max(0.0, along) / max(length(a, b, c), 1e-30)
 
-    v, f (3, m); press (m, 9); mass (m,), 0 where held. Returns the tool's further work and what was dissipated
+
+@njit(**FAST)
+def settle_row(v, f, normal, press, mass, speed, keep, dt):
+    """Add the tool's forces to a row and let it act on the sum implicitly: f <- m (m + J)^-1 f; press is cleared.
+
+    v, f (3, m); press (m, PRESS); mass (m,), 0 where held; normal (m,)
+    gathers the tool's normal forces [N]; keep: what mass
+    damping leaves of v. Returns the tool's further work and what was dissipated
     [N mm]: the viscous force and the change of f, times the mid-step velocity relative to the tool.
     """
     work = lost = 0.0
     for j in range(mass.shape[0]):
         m = mass[j]
-        if m > 0.0 and press[j, 0] + press[j, 1] + press[j, 2] > 0.0:
-            a, b, c = m + press[j, 0], m + press[j, 1], m + press[j, 2]
-            d, e, g = press[j, 3], press[j, 4], press[j, 5]  # xy, xz, yz
+        viscous = abs(press[j, 9]) + abs(press[j, 10]) + abs(press[j, 11])
+        if m > 0.0 and press[j, 3] + press[j, 4] + press[j, 5] + viscous > 0.0:
+            a, b, c = m + press[j, 3], m + press[j, 4], m + press[j, 5]
+            d, e, g = press[j, 6], press[j, 7], press[j, 8]  # xy, xz, yz
             aa, bb, cc = b * c - g * g, a * c - e * e, a * b - d * d
             dd, ee, gg = e * g - d * c, d * g - e * b, d * e - a * g
             r = m / (a * aa + d * dd + e * ee)
-            x, y, z = f[0, j], f[1, j], f[2, j]
+            x, y, z = f[0, j] + press[j, 0], f[1, j] + press[j, 1], f[2, j] + press[j, 2]
             fx = r * (aa * x + dd * y + ee * z)
             fy = r * (dd * x + bb * y + gg * z)
             fz = r * (ee * x + gg * y + cc * z)
             f[0, j], f[1, j], f[2, j] = fx, fy, fz
             h = 0.5 * dt / m
             x, y, z = fx - x, fy - y, fz - z  # what the tensor took
+            normal[j] += _along(press[j], x, y, z)
             work += z * speed * dt
             lost -= dt * (
-                (x + press[j, 6]) * (v[0, j] + h * fx)
-                + (y + press[j, 7]) * (v[1, j] + h * fy)
-                + (z + press[j, 8]) * (v[2, j] + h * fz - speed)
+                (x + press[j, 9]) * (keep * v[0, j] + h * fx)
+                + (y + press[j, 10]) * (keep * v[1, j] + h * fy)
+                + (z + press[j, 11]) * (keep * v[2, j] + h * fz - speed)
             )
         for k in range(PRESS):
             press[j, k] = 0.0

@@ -2,11 +2,13 @@
 
 Step n, of length dt (leapfrog: v lives half a step behind x):
 
-    1  f = gravity + shear + bending + folds + diaphragms + pressure + contact + tool      blocks of rows
-    2  f of the tool's sheet <- m (m + J)^-1 f (`contact.tool`)
-       v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+    1  f = gravity + shear + bending + folds + diaphragms + squeeze + pressure + contact    blocks of rows
+    2  v <- exp(-damping dt) v + dt f / m;  diaphragms: x <- x + dt v                       blocks of rows
+       (not the sheet that meets the tool)
     3  plies: v and kept tensions corrected along family 1 (`elements.tension`)             fibre lines
+       what the tool does to its sheet, f of which is known                                 blocks of rows
     4  plies: the same along family 2                                                       fibre lines
+       tool's sheet: f <- m (m + J)^-1 (f + tool), then as 2 (`contact.tool`)               blocks of rows
     5, 6  as 3, 4, with the string's step
     7  plies: x <- x + dt v                                                                 blocks of rows
 
@@ -35,7 +37,12 @@ from ddf.elements.fold import fold_forces, fold_lattice_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
+from ddf.elements.shell_membrane import membrane, shell
+from ddf.elements.shell_membrane.history import HISTORY
+from ddf.elements.shell_membrane.rotations import turn_row
+from ddf.elements.squeeze import squeeze_forces
 from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
+from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
     CONTACT_DAMPING,
     DAMPING,
@@ -44,6 +51,8 @@ from ddf.model import (
     MASS_DAMPING,
     NORMAL_SPRING,
     PLY,
+    SHELL_PLY,
+    SQUEEZE_WORK,
     TANGENTIAL_SPRING,
     TOOL_DAMPING,
     TOOL_FRICTION,
@@ -54,6 +63,7 @@ from ddf.model import (
     TOOL_Z,
     fours,
     scalars,
+    shell_fields,
     vectors,
 )
 
@@ -64,17 +74,20 @@ class Work(NamedTuple):
     """Scratch memory. Nothing in it outlives a step but `sleep` and `rest`, set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
-    packed: np.ndarray  # (4 N,) positions as (x, y, z, 0)
+    packed: np.ndarray  # (4 N,) positions as (x, y, z, cover)
     rates: np.ndarray  # (4 N,) velocities likewise
+    nothing: np.ndarray  # (N,) zeros
+    normal: np.ndarray  # (N,) normal contact forces on slaves [N]
     buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
     chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
     sums: np.ndarray  # (members, 4)
-    carry: np.ndarray  # (blocks, widest + 2, CARRY) row of the next block, from the tool's contact
+    carry: np.ndarray  # (blocks, widest + 2, PRESS) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
+    shell_carry: np.ndarray  # (6, blocks, widest) row of the next block, from a shell ply's cells: forces, pulls
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
-    give: np.ndarray  # (members, CARRY)
+    give: np.ndarray  # (members, PRESS)
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
@@ -103,7 +116,7 @@ def _weigh_row(f, gravity, mass):
 
 
 @njit(**FAST)
-def _internal(model, state, row, b, scratch):
+def _internal(model, state, work, row, b, scratch):
     """Gravity, internal forces and pressure of a block's rows; what was there is overwritten."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
@@ -114,6 +127,12 @@ def _internal(model, state, row, b, scratch):
     for i in range(low, high):
         for c in range(3):
             _weigh_row(f[c, i], model.gravity[c], mass[i])
+    if sheet.squeeze > 0.0:
+        power = squeeze_forces(
+            x, vectors(state.v, sheet), f, scalars(model.cell, sheet), scalars(state.press, sheet), sheet.squeeze,
+            low, high, w,
+        )  # fmt: skip
+        state.ledger[b, SQUEEZE_WORK] += model.dt * power
     if sheet.kind == PLY:
         shear_forces(x, f, scalars(model.cell, sheet), model.shear_tables[sheet.shear], low, high, scratch)
         triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
@@ -122,6 +141,8 @@ def _internal(model, state, row, b, scratch):
             fold_lattice_forces(
                 x, f, triple1, triple2, sheet.a1, sheet.a2, sheet.hourglass, sheet.fold_radius, low, high, w
             )
+    elif sheet.kind == SHELL_PLY:
+        _shell_membrane(model, state, work.shell_carry, b, scratch)
     else:
         dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
@@ -130,6 +151,42 @@ def _internal(model, state, row, b, scratch):
             plate_forces(x, f, dx, dy, sheet.rigidity, low, high, w)
         if sheet.fold_radius > 0.0:
             fold_forces(x, f, dx, dy, sheet.hourglass, sheet.fold_radius, low, high, w)
+
+
+@njit(**FAST)
+def _shell_membrane(model, state, carry, b, scratch):
+    """Membrane, shell and folds of a block of a shell ply; what belongs to the next block's first row goes to carry."""
+    block = model.blocks[b]
+    sheet = model.sheets[block.sheet]
+    x, f, cell = vectors(state.x, sheet), vectors(state.f, sheet), scalars(model.cell, sheet)
+    past = shell_fields(state.history, sheet, HISTORY)
+    low, high = block.low, block.high
+    carry[:, b] = 0.0
+    done = membrane.membrane_forces(
+        x, f, past, cell, model.tangents[sheet.shear], TANGENT_SPAN, sheet, sheet.viscous / model.dt, low, high,
+        carry[:3], b, scratch,
+    )  # fmt: skip
+    if max(sheet.bend1, sheet.bend2) > 0.0:
+        director, pull = shell_fields(state.director, sheet, 3), shell_fields(state.pull, sheet, 3)
+        pull[:, low:high] = 0.0
+        done += shell.shell_forces(x, f, director, pull, past, cell, sheet, low, high, carry, b, scratch)
+    state.ledger[b, FIBRE_WORK] -= done
+    if sheet.fold_radius > 0.0:
+        w = scratch[: SCRATCH_ROWS * (sheet.cols + 2)].reshape((SCRATCH_ROWS, sheet.cols + 2))
+        triple1, triple2 = scalars(model.triple1, sheet), scalars(model.triple2, sheet)
+        fold_lattice_forces(
+            x, f, triple1, triple2, sheet.a1, sheet.a2, sheet.hourglass, sheet.fold_radius, low, high, w
+        )
+
+
+@njit(**FAST)
+def _collect_shell(state, sheet, carry, low, b):
+    """Add what the block before carried over to a shell ply's block."""
+    f, pull = vectors(state.f, sheet), shell_fields(state.pull, sheet, 3)
+    for c in range(3):
+        for j in range(sheet.cols):
+            f[c, low, j] += carry[c, b - 1, j]
+            pull[c, low, j] += carry[3 + c, b - 1, j]
 
 
 @njit(inline="always")
@@ -164,8 +221,8 @@ def _pack(model, state, work, b):
     """Pack the positions and velocities of a block's rows for contact."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    pack_rows(vectors(state.x, sheet), _packed(work.packed, sheet), block.low, block.high)
-    pack_rows(vectors(state.v, sheet), _packed(work.rates, sheet), block.low, block.high)
+    pack_rows(vectors(state.x, sheet), scalars(model.cover, sheet), _packed(work.packed, sheet), block.low, block.high)
+    pack_rows(vectors(state.v, sheet), scalars(work.nothing, sheet), _packed(work.rates, sheet), block.low, block.high)
 
 
 @njit(**FAST)
@@ -175,6 +232,8 @@ def _layers(model, state, work, member, b, dt, reach):
     index = b - _first_block(model, block.sheet)
     out = work.sums[member]
     out[:] = 0.0
+    normal = scalars(work.normal, model.sheets[block.sheet])
+    normal[block.low : block.high] = 0.0
     scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member], work.chunks[3][member])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
@@ -186,7 +245,8 @@ def _layers(model, state, work, member, b, dt, reach):
         n = slave.rows * slave.cols
         first = pair.first
         layer_forces(
-            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), scalars(model.area, slave),
+            vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), normal,
+            scalars(model.area, slave),
             _packed(work.packed, master), _packed(work.rates, master), scalars(model.cell, master),
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
@@ -204,7 +264,7 @@ def _layers(model, state, work, member, b, dt, reach):
 
 @njit(**FAST)
 def _tool(model, state, work, member, row, b, dt, reach):
-    """Forces of the tool on a block of its sheet."""
+    """What the tool does to a block of its sheet, on which all other forces stand."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     dx = model.lines[sheet.line : sheet.line + sheet.rows - 1]
@@ -216,7 +276,7 @@ def _tool(model, state, work, member, row, b, dt, reach):
     out[:] = 0.0
     law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
     done, work.carried[b] = tool_forces(
-        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet),
+        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.inverse_mass, sheet),
         work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
         state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
@@ -229,11 +289,12 @@ def _tool(model, state, work, member, row, b, dt, reach):
 
 
 @njit(**FAST)
-def _collect(model, state, work, row, b):
-    """Add what other blocks put on this block's rows: master buffers, then the tool's carried row."""
+def _collect(model, state, work, b):
+    """Add what other blocks' slaves put on this block's rows."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    f = vectors(state.f, sheet)
+    f, press = vectors(state.f, sheet), scalars(state.press, sheet)
+    press[block.low : block.high] = scalars(work.normal, sheet)[block.low : block.high]
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
         if pair.master != block.sheet:
@@ -245,30 +306,30 @@ def _collect(model, state, work, row, b):
             for i in range(block.low, block.high):
                 j0, j1 = touched(span, i)
                 if j1 > j0:
-                    collect_row(f, buffer, i, j0, j1)
+                    collect_row(f, press, buffer, i, j0, j1)
             index += 1
-    if block.sheet == model.tool_sheet:
-        _settle_tool(model, state, work, row, b)
+    if sheet.kind == SHELL_PLY and block.low > 0:
+        _collect_shell(state, sheet, work.shell_carry, block.low, b)
 
 
 @njit(**FAST)
 def _settle_tool(model, state, work, row, b):
-    """Add what the block before carried over; then let the implicit tool act on the sum of all forces."""
+    """Add what the block before carried over; then let the implicit tool act."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    f, v, mass = vectors(state.f, sheet), vectors(state.v, sheet), scalars(model.mass, sheet)
-    press = work.press.reshape((sheet.rows, sheet.cols, PRESS))
+    v, f, mass = vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.mass, sheet)
+    press, normal = work.press.reshape((sheet.rows, sheet.cols, PRESS)), scalars(state.press, sheet)
     if block.low > 0 and work.carried[b - 1]:
         carry = work.carry[b - 1]
         for j in range(sheet.cols):
-            for c in range(3):
-                f[c, block.low, j] += carry[j, c]
             for c in range(PRESS):
-                press[block.low, j, c] += carry[j, 3 + c]
+                press[block.low, j, c] += carry[j, c]
         work.pressed[block.low] = True
     for i in range(block.low, block.high):
         if work.pressed[i]:
-            done, lost = settle_row(v[:, i], f[:, i], press[i], mass[i], row[TOOL_SPEED], model.dt)
+            done, lost = settle_row(
+                v[:, i], f[:, i], normal[i], press[i], mass[i], row[TOOL_SPEED], row[DAMPING], model.dt
+            )
             state.ledger[b, TOOL_WORK] += done
             state.ledger[b, TOOL_DAMPING] += lost
             work.pressed[i] = False
@@ -316,6 +377,11 @@ def _kick(model, state, b, damping, scratch):
             power += q
             if sheet.kind != PLY:
                 _drift_row(x[c, i], v[c, i], f[c, i], mass[i], dt)
+    if sheet.kind == SHELL_PLY and max(sheet.bend1, sheet.bend2) > 0.0:
+        director, spin = shell_fields(state.director, sheet, 3), shell_fields(state.spin, sheet, 3)
+        pull = shell_fields(state.pull, sheet, 3)
+        for i in range(block.low, block.high):
+            square += turn_row(director[:, i], spin[:, i], pull[:, i], mass[i], inverse[i], sheet.gyration, damping, dt)
     state.ledger[b, MASS_DAMPING] += 0.5 * square * (1.0 - damping * damping)
     if sheet.kind == PLY:
         state.ledger[b, FIBRE_WORK] -= 0.5 * damping * (damping * square + dt * power)
@@ -366,13 +432,18 @@ def _pull(model, state, work, member, family, sweep, k, low, high):
 
 
 @njit(**FAST)
-def _pull_family(model, state, work, sync, base, member, family, sweep):
-    """All bundles of a family, shared among the members."""
+def _pull_family(model, state, work, member, family, sweep, t):
+    """Task number t of a family's bundles."""
     bundles = work.bundles1 if family == 1 else work.bundles2
-    t = draw(sync, base)
-    while t < bundles.shape[0]:
-        _pull(model, state, work, member, family, sweep, bundles[t, 0], bundles[t, 1], bundles[t, 2])
-        t = draw(sync, base)
+    _pull(model, state, work, member, family, sweep, bundles[t, 0], bundles[t, 1], bundles[t, 2])
+
+
+@njit(**FAST)
+def _move(model, state, work, row, b, member):
+    """Kick, move and pack a block of the tool's sheet after the tool has acted."""
+    _settle_tool(model, state, work, row, b)
+    _kick(model, state, b, row[DAMPING], work.scratch[member])
+    _pack(model, state, work, b)
 
 
 @njit(**FAST)
@@ -382,6 +453,11 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     first: number of the first step; reach: way that a sheet can go in a step, for what sleeps and rests [mm].
     """
     blocks = model.blocks.shape[0]
+    tool_blocks, tool_first = 0, 0
+    if model.tool_sheet >= 0:
+        tool_first = _first_block(model, model.tool_sheet)
+        while tool_first + tool_blocks < blocks and model.blocks[tool_first + tool_blocks].sheet == model.tool_sheet:
+            tool_blocks += 1
     base = 0
     b = draw(sync, base)
     while b < blocks:
@@ -393,27 +469,36 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
         row = schedule[n]
         b = draw(sync, base)
         while b < blocks:
-            _internal(model, state, row, b, work.scratch[member])
+            _internal(model, state, work, row, b, work.scratch[member])
             _layers(model, state, work, member, b, model.dt, reach)
-            if model.blocks[b].sheet == model.tool_sheet:
-                _tool(model, state, work, member, row, b, model.dt, reach)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:
-            _collect(model, state, work, row, b)
-            _kick(model, state, b, row[DAMPING], work.scratch[member])
-            if model.sheets[model.blocks[b].sheet].kind != PLY:
-                _pack(model, state, work, b)
+            _collect(model, state, work, b)
+            if model.blocks[b].sheet != model.tool_sheet:
+                _kick(model, state, b, row[DAMPING], work.scratch[member])
+                if model.sheets[model.blocks[b].sheet].kind != PLY:
+                    _pack(model, state, work, b)
             b = draw(sync, base)
         base += blocks + members
         barrier(sync, members)
         early = 1 + (first + n) % 2
         for turn in range(4):
             family = early if turn % 2 == 0 else 3 - early
-            _pull_family(model, state, work, sync, base, member, family, turn // 2)
-            base += (work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]) + members
+            bundles = work.bundles1.shape[0] if family == 1 else work.bundles2.shape[0]
+            also = tool_blocks if turn < 2 else 0
+            t = draw(sync, base)
+            while t < also + bundles:
+                if t >= also:
+                    _pull_family(model, state, work, member, family, turn // 2, t - also)
+                elif turn == 0:
+                    _tool(model, state, work, member, row, tool_first + t, model.dt, reach)
+                else:
+                    _move(model, state, work, row, tool_first + t, member)
+                t = draw(sync, base)
+            base += also + bundles + members
             barrier(sync, members)
         b = draw(sync, base)
         while b < blocks:

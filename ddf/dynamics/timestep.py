@@ -29,6 +29,31 @@ def ply_omega2(
     return (stretch + bending + 2.0 * contact) / mass
 
 
+def shell_membrane_omega2(
+    stiff: float, shear: float, transverse: float, spacing: tuple[float, float], contact: float, mass: float
+) -> float:
+    """Bound of omega^2 of a shell-membrane ply, whose fibre tension is explicit.
+
+    Tension 4 E h/a^2/m, E h [N/mm] of the stiffer family, flexural part included, a the shorter side: with one point a
+    cell a wave that alternates along one grid direction has gradients along it only, and the squares of the two parts
+    of any other wave's gradients add up to no more. Trellis and transverse shear 4 (N_s' + K) q/m,
+    q = 1/a1^2 + 1/a2^2; contact as in `ply_omega2`; rotations add nothing (`shell_gyration`).
+    """
+    q = 1.0 / spacing[0] ** 2 + 1.0 / spacing[1] ** 2
+    return (4.0 * stiff / min(spacing) ** 2 + 4.0 * (shear + transverse) * q + 2.0 * contact) / mass
+
+
+def shell_gyration(
+    stiff: float, rigidity: float, transverse: float, thickness: float, spacing: tuple[float, float]
+) -> float:
+    """Rotary inertia over mass [mm2] of a shell ply: h^2/12, or what keeps its frequencies under the fibres'.
+
+    Rotations alone have omega^2 <= (K + 4 D q)/(m r^2), deflections alone 4 K q/m, both together no more than the sum.
+    """
+    q = 1.0 / spacing[0] ** 2 + 1.0 / spacing[1] ** 2
+    return max(thickness**2 / 12.0, (transverse + 4.0 * rigidity * q) * min(spacing) ** 2 / (4.0 * stiff))
+
+
 def diaphragm_omega2(
     mu: float, thickness: float, rigidity: float, mass: float, element: float, contact: float
 ) -> float:

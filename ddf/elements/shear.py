@@ -128,9 +128,13 @@ def shear_sine(x: np.ndarray) -> np.ndarray:
 
 
 def shear_energy(x: np.ndarray, cell: np.ndarray, table: np.ndarray) -> float:
-    """Sum of A W(s) [N mm]; the integral of the table's cubics."""
-    s = np.abs(shear_sine(x))
-    area = cell[:-1, :-1]
+    """Sum of A W(s) [N mm] over all cells."""
+    return table_energy(shear_sine(x), cell[:-1, :-1], table)
+
+
+def table_energy(sine: np.ndarray, area: np.ndarray, table: np.ndarray) -> float:
+    """Sum of A W(s) [N mm] for sines s and areas A of one shape; the integral of the table's cubics."""
+    s = np.abs(sine)
     width = table[-1, 0]
     k = np.minimum((s / width).astype(np.int64), table.shape[0] - 2)
     u = s / width - k

@@ -26,6 +26,7 @@ FloatArray = NDArray[np.float64]
 LARGEST_SINE = 0.985  # 80 degrees; the last cubic goes on beyond
 INTERVALS = 1024
 SAMPLES = 4001
+TANGENT_SPAN = float(np.deg2rad(80.0))  # of a tangent table [rad]; its last interval goes on beyond
 
 
 def polynomial_law(coefficients: Sequence[float], thickness_mm: float, angle: FloatArray) -> FloatArray:
@@ -93,6 +94,12 @@ def shear_table(angle: FloatArray, force: FloatArray) -> FloatArray:
     table[:-1, 4] = slope.antiderivative()(s[:-1])
     table[-1, 0] = width
     return table
+
+
+def tangent_table(angle: FloatArray, force: FloatArray) -> FloatArray:
+    """Tangents h G = dN_s/dg [N/mm], (INTERVALS,), means over even intervals of the angle from 0 to TANGENT_SPAN."""
+    g = np.linspace(0.0, TANGENT_SPAN, INTERVALS + 1)
+    return np.diff(np.interp(g, angle, force)) / g[1]
 
 
 def largest_tangent(angle: FloatArray, force: FloatArray, up_to_deg: float = 60.0) -> float:

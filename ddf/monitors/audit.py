@@ -42,6 +42,16 @@ def deepest_penetration(scene: Scene, time: float) -> float:
     return max(deepest, 0.0)
 
 
+def ply_inside_tool(scene: Scene, time: float) -> float:
+    """Deepest node of any ply's mid-surface inside the tool [mm]: there only if the sheets below let it by."""
+    deepest = 0.0
+    for k in scene.ply_sheets:
+        active = sheet_scalars(scene.model, scene.model.mass, k) > 0
+        points = np.ascontiguousarray(sheet_vectors(scene.model, scene.state.x, k)[:, active].T)
+        deepest = max(deepest, float(-scene.obstacle_distance(points, time).min()))
+    return deepest
+
+
 def _samples(x: np.ndarray) -> Iterator[np.ndarray]:
     """SAMPLES x SAMPLES points of every bilinear cell of x (3, n, m), (k, 3) at a time."""
     share = (np.arange(SAMPLES) + 0.5) / SAMPLES
@@ -90,6 +100,9 @@ def audit(scene: Scene, energy: Energies, time: float, elements_across: float | 
         _check("largest fibre strain", 100 * max(-low, high), 0.3, "%", "fibres are as good as inextensible"),
         _check("added mass", 100 * added, 50.0, "% of all", "mass scaling of the plies is small"),
     ]
+    if scene.tool_field is not None:
+        inside = ply_inside_tool(scene, time)
+        checks.append(_check("deepest place of a ply in the tool", inside, 0.5, "mm", "layers lie in their order"))
     if scene.tool_mesh is not None:
         checks.append(_check("gap over the tool's apex", apex_gap(scene, time), 1.0, "mm", "the tool is covered"))
     if elements_across is not None:

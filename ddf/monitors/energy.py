@@ -3,7 +3,8 @@
 kinetic + strain + contact springs + dissipated = work of pressures and tool, up to the error of the steps.
 Kinetic energy is taken in mid-step: velocities are advanced by half a kick with the last forces. What the
 implicit steps of fibre tension dissipate (`fibre_waves`) is the work done on the tension less the strain energy
-that the fibres hold; plies start unstretched.
+that the fibres hold; plies start unstretched. Of shell-membrane plies it is the work of their stresses less what
+they store (`elements.shell_membrane.energy`): fibre damping, and what their rate law does not give back.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from ddf.elements.fold import fold_energy, fold_lattice_energy
 from ddf.elements.plate import plate_energy
 from ddf.elements.rubber import rubber_energy
 from ddf.elements.shear import shear_energy
+from ddf.elements.shell_membrane.energy import elastic_energies, stored_energies
+from ddf.elements.shell_membrane.history import HISTORY
 from ddf.elements.tension import tension_energy
 from ddf.model import (
     CONTACT_DAMPING,
@@ -25,12 +28,15 @@ from ddf.model import (
     MASS_DAMPING,
     PLY,
     PRESSURE_WORK,
+    SHELL_PLY,
+    SQUEEZE_WORK,
     TOOL_DAMPING,
     TOOL_FRICTION,
     TOOL_WORK,
     Model,
     State,
     sheet_scalars,
+    sheet_shells,
     sheet_vectors,
 )
 
@@ -100,12 +106,25 @@ def sheet_strain(model: Model, state: State, k: int) -> dict[str, float]:
             "bending": bend,
             "folding": folding,
         }
+    if sheet["kind"] == SHELL_PLY:
+        cell, director = pool(model.cell), sheet_shells(model, state.director, k, 3)
+        history = sheet_shells(model, state.history, k, HISTORY)
+        folding, _ = fold_lattice_energy(
+            x, pool(model.triple1), pool(model.triple2), (float(sheet["a1"]), float(sheet["a2"])),
+            float(sheet["hourglass"]), float(sheet["fold_radius"]),
+        )  # fmt: skip
+        stored = stored_energies(history, cell, model.shear_tables[sheet["shear"]], sheet)
+        return stored | elastic_energies(x, director, cell, sheet) | {"folding": folding}
     a, n, m = int(sheet["line"]), int(sheet["rows"]), int(sheet["cols"])
     dx, dy = model.lines[a : a + n - 1], model.lines[a + n - 1 : a + n + m - 2]
     membrane, hourglass, twist = rubber_energy(x, dx, dy, sheet, model.ogden)
     bending = twist + plate_energy(x, dx, dy, float(sheet["rigidity"]))
     folding, _ = fold_energy(x, dx, dy, float(sheet["hourglass"]), float(sheet["fold_radius"]))
     return {"membrane": membrane, "hourglass": hourglass, "bending": bending, "folding": folding}
+
+
+#: strain energies that the work in the ledger's FIBRE_WORK went to, by the kind of sheet
+_KEPT = {PLY: ("fibre_tension",), SHELL_PLY: ("fibre_tension", "shear", "bending")}
 
 
 def kinetic_energy(model: Model, state: State, k: int) -> float:
@@ -115,7 +134,12 @@ def kinetic_energy(model: Model, state: State, k: int) -> float:
         return float(0.5 * np.sum(sheet_scalars(model, model.mass, k) * (v * v).sum(axis=0)))
     v, f = sheet_vectors(model, state.v, k), sheet_vectors(model, state.f, k)
     middle = v + 0.5 * model.dt * sheet_scalars(model, model.inverse_mass, k) * f
-    return float(0.5 * np.sum(sheet_scalars(model, model.mass, k) * (middle * middle).sum(axis=0)))
+    mass = sheet_scalars(model, model.mass, k)
+    kinetic = float(0.5 * np.sum(mass * (middle * middle).sum(axis=0)))
+    if model.sheets[k]["kind"] == SHELL_PLY:
+        spin = sheet_shells(model, state.spin, k, 3)
+        kinetic += 0.5 * float(model.sheets[k]["gyration"]) * float(np.sum(mass * (spin * spin).sum(axis=0)))
+    return kinetic
 
 
 def energies(model: Model, state: State) -> Energies:
@@ -123,7 +147,9 @@ def energies(model: Model, state: State) -> Energies:
     ledger = state.ledger.sum(axis=0)
     count = model.sheets.size
     strain = tuple(sheet_strain(model, state, k) for k in range(count))
-    tension = sum(s.get("fibre_tension", 0.0) for s in strain)
+    kept = 0.0
+    for k, parts in enumerate(strain):
+        kept += sum(parts[name] for name in _KEPT.get(int(model.sheets[k]["kind"]), ()))
     return Energies(
         kinetic=tuple(kinetic_energy(model, state, k) for k in range(count)),
         strain=strain,
@@ -134,7 +160,11 @@ def energies(model: Model, state: State) -> Energies:
             "tool_friction": float(ledger[TOOL_FRICTION]),
             "tool_damping": float(ledger[TOOL_DAMPING]),
             "mass_damping": float(ledger[MASS_DAMPING]),
-            "fibre_waves": -float(ledger[FIBRE_WORK]) - tension,
+            "fibre_waves": -float(ledger[FIBRE_WORK]) - kept,
         },
-        work={"pressure": float(ledger[PRESSURE_WORK]), "tool": float(ledger[TOOL_WORK])},
+        work={
+            "pressure": float(ledger[PRESSURE_WORK]),
+            "tool": float(ledger[TOOL_WORK]),
+            "thinning": float(ledger[SQUEEZE_WORK]),
+        },
     )

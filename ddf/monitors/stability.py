@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddf.model import PLY, Model, State, sheet_vectors
+from ddf.model import DIAPHRAGM, Model, State, sheet_vectors
 
 LARGEST_FIBRE_STRAIN = 0.10
 """Beyond this the series of the fibres' law no longer holds (`elements.tension`)."""
@@ -80,7 +80,7 @@ def check_state(model: Model, state: State, names: list[str], start: np.ndarray)
             cause = "a step too long for the contacts, or a fold that collapses"
             key = "solver.step_safety, solver.contact_stiffness_N_mm3 or the element sizes"
             return Alarm(name, bad, _triple(place), problem, cause, key)
-        if model.sheets[k]["kind"] == PLY:
+        if model.sheets[k]["kind"] != DIAPHRAGM:
             alarm = _torn(model, x, k, name)
             if alarm is not None:
                 return alarm
@@ -105,7 +105,7 @@ def _torn(model: Model, x: np.ndarray, k: int, name: str) -> Alarm | None:
 
 def _smallest_size(model: Model, k: int) -> float:
     s = model.sheets[k]
-    if s["kind"] == PLY:
+    if s["kind"] != DIAPHRAGM:
         return float(min(s["a1"], s["a2"]))
     a, n, m = int(s["line"]), int(s["rows"]), int(s["cols"])
     return float(model.lines[a : a + n + m - 2].min())

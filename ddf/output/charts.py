@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ddf.loads.path import LoadPath
+from ddf.metrics import PlySurface
 from ddf.output import figures
 from ddf.output.plots import formed_image
-from ddf.output.raster import Box
-from ddf.output.snapshot import Snapshot
+from ddf.output.snapshot import SheetSnapshot
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -24,18 +25,18 @@ def draw_energies(history: Columns) -> Any:
     for colour, (label, values) in zip(figures.COLOURS, _energy_lines(history).items(), strict=False):
         upper.plot(time, values, label=label, color=colour, linewidth=1.6)
     upper.set_ylabel("energy [mJ]")
-    upper.set_title("Energies", loc="left", color=figures.INK, fontsize=11)
-    upper.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    upper.set_title("Energies", loc="left", color=figures.INK, fontsize=figures.TITLE_PT, pad=34)
+    upper.legend(fontsize=figures.NOTE_PT, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     internal = np.maximum(history["kinetic_over_internal_percent"], 1e-4)
     lower.semilogy(time, internal, color=figures.COLOURS[1], linewidth=1.4, label="kinetic / internal")
     error = np.maximum(np.abs(history["energy_error_percent"]), 1e-4)
     lower.semilogy(time, error, color=figures.COLOURS[0], linewidth=1.2, label="|energy error|")
     lower.set(xlabel="process time [s]", ylabel="ratio [%]", ylim=(1e-3, 1e3))
-    lower.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    lower.legend(fontsize=figures.NOTE_PT, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     _mark_stages((upper, lower), time, history["stage"])
     for axes in (upper, lower):
         axes.grid(color="#e5e8eb", linewidth=0.6)
-        axes.tick_params(colors=figures.MUTED, labelsize=8)
+        axes.tick_params(colors=figures.MUTED, labelsize=figures.NOTE_PT)
         axes.spines[["top", "right"]].set_visible(False)
     return figure
 
@@ -66,36 +67,38 @@ def _mark_stages(axes: Sequence[Any], time: NDArray[Any], stages: NDArray[Any]) 
     for one in axes:
         for edge in edges[1:-1]:
             one.axvline(edge, color=figures.MUTED, linewidth=0.8, linestyle=(0, (4, 3)))
-    pad = 0.006 * max(edges[-1], 1e-12)
     for number, (edge, first) in enumerate(zip(edges[:-1], starts[:-1], strict=True)):
         axes[0].text(
-            edge + pad, 0.985 if number % 2 == 0 else 0.935, str(stages[first]),
-            transform=axes[0].get_xaxis_transform(), ha="left", va="top", fontsize=8, color=figures.MUTED,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+            edge, 1.012 if number % 2 == 0 else 1.06, str(stages[first]), transform=axes[0].get_xaxis_transform(),
+            ha="left", va="bottom", fontsize=figures.NOTE_PT, color=figures.MUTED,
         )  # fmt: skip
 
 
-def draw_stages(snapshots: Sequence[Snapshot], sheet: str | None = None, box: Box | None = None) -> Any:
-    """The sheet (left out: the top one) at each snapshot as a strip, under one light and one scale."""
-    if not snapshots:
-        raise ValueError("no snapshots to draw")
-    name = sheet or snapshots[0].sheets[-1].name
-    frame = box or _strip_box(snapshots[-1])
-    count = len(snapshots)
-    figure = figures.new_figure(min(3.0 * count, 16.0), min(3.0, 16.0 / count) + 0.4)
-    for number, snapshot in enumerate(snapshots, start=1):
-        part = snapshot.sheet(name)
-        title = f"{snapshot.stage}\n{1e3 * snapshot.time_s:.0f} ms, lift {snapshot.loads['tool_lift_mm']:.0f} mm"
-        axes = figures.plan_axes(figure, frame, "", (1, count, number))
-        axes.set_title(title, fontsize=8.5, color=figures.INK)
-        axes.imshow(formed_image(part, None, frame, pixels=500), extent=frame, origin="lower")
+def draw_stages(path: LoadPath, frames: Sequence[tuple[float, PlySurface]]) -> Any:
+    """A ply at some times [s] as a strip from above, under one light and one scale."""
+    if not frames:
+        raise ValueError("no frames to draw")
+    points = np.concatenate([surface.x[:, surface.active] for _, surface in frames], axis=1)
+    box, count = figures.view_box(points), len(frames)
+    columns = min(count, 3)
+    rows = -(-count // columns)
+    figure = figures.new_figure(3.6 * columns, 4.2 * rows)
+    for number, (time, surface) in enumerate(frames, start=1):
+        axes = figures.plan_axes(figure, box, "", (rows, columns, number))
+        axes.set_title(moment(path, time), loc="left", fontsize=figures.NOTE_PT, color=figures.INK)
+        sheet = SheetSnapshot(surface.name, "ply", surface.x, surface.cell_fraction > 0, {}, {})
+        axes.imshow(formed_image(sheet, surface, box, pixels=500), extent=box, origin="lower")
         axes.set(xticks=[], yticks=[], xlabel="", ylabel="")
         if number == count:
-            figures.scale_bar(axes, frame)
+            figures.scale_bar(axes, box)
     return figure
 
 
-def _strip_box(last: Snapshot) -> Box:
-    """The plies' box with room around it; all of the first sheet where there is no ply."""
-    plies = [sheet for sheet in last.sheets if sheet.kind == "ply"] or [last.sheets[0]]
-    return figures.view_box(np.concatenate([sheet.x.reshape(3, -1) for sheet in plies], axis=1), 40.0)
+def moment(path: LoadPath, time: float) -> str:
+    """Stage, time, absolute pressures and lift at a time [s], on two lines."""
+    now = path.at(time)
+    stage = path.names[int(path.stage(time * (1.0 - 1e-6)))]
+    return (
+        f"{stage}: {1e3 * time:.0f} ms\ncavity {now['cavity_pressure_kPa']:.1f} kPa, "
+        f"box {now['box_pressure_kPa']:.1f} kPa, lift {now['tool_lift_mm']:.0f} mm"
+    )

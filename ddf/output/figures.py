@@ -14,6 +14,7 @@ from ddf.output.raster import Box
 DPI = 150
 INK = "#26323d"
 MUTED = "#6b7681"
+TITLE_PT, LABEL_PT, NOTE_PT = 13, 11, 10  # to be read on a page as narrow as a telephone
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000")
 
 
@@ -49,9 +50,11 @@ def view_box(x: NDArray[np.float64], margin_mm: float = 20.0) -> Box:
 def plan_axes(figure: Any, box: Box, title: str, place: tuple[int, int, int] = (1, 1, 1)) -> Any:
     """Axes in plan with equal scales, in mm."""
     axes = figure.add_subplot(*place)
-    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xlabel="x [mm]", ylabel="y [mm]")
-    axes.set_title(title, loc="left", color=INK, fontsize=11)
-    axes.tick_params(colors=MUTED, labelsize=8)
+    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
+    axes.set_xlabel("x [mm]", fontsize=LABEL_PT)
+    axes.set_ylabel("y [mm]", fontsize=LABEL_PT)
+    axes.set_title(title, loc="left", color=INK, fontsize=TITLE_PT)
+    axes.tick_params(colors=MUTED, labelsize=NOTE_PT)
     for side in axes.spines.values():
         side.set_color("#c3c9cf")
     return axes
@@ -67,5 +70,5 @@ def scale_bar(axes: Any, box: Box, length_mm: float | None = None) -> None:
     axes.plot([right - length_mm, right], [low, low], color=INK, linewidth=3, solid_capstyle="butt")
     axes.text(
         right - length_mm / 2, low + 0.008 * width, f"{length_mm:g} mm", ha="center", va="bottom",
-        fontsize=8, color=INK,
+        fontsize=NOTE_PT, color=INK,
     )  # fmt: skip

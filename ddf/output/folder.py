@@ -12,8 +12,14 @@ import numpy as np
 from ddf.errors import UsageError
 from ddf.output import atomic
 
-#: subfolders and the ending of what is in them
-SUBFOLDERS = {"frames": "vtu", "profiles": "csv", "patterns": "csv", "pictures": "png"}
+#: subfolders and the endings of what is in them
+SUBFOLDERS = {
+    "frames": ("vtu",),
+    "profiles": ("csv",),
+    "patterns": ("csv",),
+    "pictures": ("png",),
+    "export": ("vtu", "csv", "dxf", "svg", "gif", "mp4"),
+}
 #: temporary files, as patterns from the folder's top
 LEFTOVERS = tuple(f"{inner}{atomic.TEMPORARY_PREFIX}*" for inner in ("", *(f"{inner}/" for inner in SUBFOLDERS)))
 #: what ddf writes into a folder, as patterns from its top: all that --force removes
@@ -30,7 +36,7 @@ KNOWN = (
     "checkpoint.npz",
     "report.html",
     "*.pvd",
-    *(f"{inner}/*.{ending}" for inner, ending in SUBFOLDERS.items()),
+    *(f"{inner}/*.{ending}" for inner, endings in SUBFOLDERS.items() for ending in endings),
     *LEFTOVERS,
 )
 #: at least one of these is in any folder that a run was started in

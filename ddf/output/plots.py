@@ -18,7 +18,8 @@ from ddf.output.snapshot import SheetSnapshot
 Array = NDArray[np.float64]
 
 SHEAR_RANGE_DEG = 60.0
-DISTANCE_RANGE_MM = 10.0
+DISTANCE_RANGE_MM = (-1.0, 10.0)
+INSIDE = "#d55e00"  # where a ply is farther inside the tool than the range goes
 PIXELS = 1400
 
 
@@ -54,18 +55,18 @@ def draw_shear(surface: PlySurface, box: Box | None = None) -> Any:
     figure, axes, view, frame = _ply_map(surface, f"{surface.name}: shear angle", box)
     image = view.cells(shear_angle(surface))
     bar = coloured(figure, axes, view, surface, image, "PuOr", (-SHEAR_RANGE_DEG, SHEAR_RANGE_DEG))
-    bar.set_label("shear angle [deg], positive: families closer than 90 deg", fontsize=9)
+    bar.set_label("shear angle [deg], positive: families closer than 90 deg", fontsize=figures.LABEL_PT)
     bar.set_ticks(np.arange(-60, 61, 15))
     figures.scale_bar(axes, frame)
     return figure
 
 
 def draw_distance(surface: PlySurface, box: Box | None = None) -> Any:
-    """Map of the distance to tool and platform [mm], 0 where the ply conforms; range 0 to 10 mm."""
+    """Map of the distance to tool and platform [mm], 0 where the ply conforms; range -1 to 10 mm, red below."""
     figure, axes, view, frame = _ply_map(surface, f"{surface.name}: distance to the tool", box)
     image = view.nodes(fill_inactive(gap_field(surface), surface.active))
-    bar = coloured(figure, axes, view, surface, image, "YlGnBu", (0.0, DISTANCE_RANGE_MM), extend="max")
-    bar.set_label("distance to tool and platform [mm], 0 where it conforms", fontsize=9)
+    bar = coloured(figure, axes, view, surface, image, "YlGnBu", DISTANCE_RANGE_MM, "both", INSIDE)
+    bar.set_label("distance to tool and platform [mm], 0: conforms, red: inside the tool", fontsize=figures.LABEL_PT)
     figures.scale_bar(axes, frame)
     return figure
 
@@ -77,7 +78,7 @@ def draw_outline(surface: PlySurface, result: WrinkleResult, tool: TriangleMesh 
     profile = boundary_profile(surface)
     points = np.concatenate([*profile.initial, *profile.deformed]).T
     frame = figures.view_box(points)
-    figure = figures.new_figure(7.4, 7.8)
+    figure = figures.new_figure(7.4, 8.3)
     axes = figures.plan_axes(figure, frame, f"{surface.name}: outline and {result.count} wrinkles")
     for loops, style in (
         (
@@ -94,7 +95,9 @@ def draw_outline(surface: PlySurface, result: WrinkleResult, tool: TriangleMesh 
         axes.add_collection(LineCollection(list(segments), colors="#009e73", linewidths=1.2, label="tool at its base"))
     _draw_wrinkles(axes, result)
     figures.scale_bar(axes, frame)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=figures.NOTE_PT, frameon=False
+    )
     return figure
 
 
@@ -128,14 +131,23 @@ def _draw_wrinkles(axes: Any, result: WrinkleResult) -> None:
             label=label,
         )
         axes.annotate(
-            str(number), crest[len(crest) // 2, :2], ha="center", va="center", fontsize=7.5, color=figures.INK,
-            bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": figures.INK, "linewidth": 0.6},
+            str(number), crest[len(crest) // 2, :2], _beside(crest, 9.0 + 0.5 * width), textcoords="offset points",
+            ha="center", va="center", fontsize=8.5, color=figures.INK,
+            bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": figures.MUTED, "linewidth": 0.5},
         )  # fmt: skip
     if result.wrinkles:
         largest = [f"{k}: {w.amplitude_mm:.1f}" for k, w in enumerate(result.wrinkles[:8], start=1)]
         more = ", ..." if result.count > 8 else ""
         text = f"amplitude [mm]  {',  '.join(largest)}{more}"
-        axes.text(0.012, 0.988, text, transform=axes.transAxes, va="top", fontsize=8, color=figures.MUTED)
+        axes.text(0.012, 0.988, text, transform=axes.transAxes, va="top", fontsize=figures.NOTE_PT, color=figures.MUTED)
+
+
+def _beside(crest: Array, points: float) -> tuple[float, float]:
+    """So many points square to a crest's chord, to the side away from the frame's centre."""
+    along = crest[-1, :2] - crest[0, :2]
+    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-300)
+    side = -1.0 if across @ crest[len(crest) // 2, :2] < 0 else 1.0
+    return float(side * points * across[0]), float(side * points * across[1])
 
 
 def _ply_map(surface: PlySurface, title: str, box: Box | None) -> tuple[Any, Any, TopView, Box]:
@@ -150,14 +162,14 @@ def _ply_map(surface: PlySurface, title: str, box: Box | None) -> tuple[Any, Any
 
 def coloured(
     figure: Any, axes: Any, view: TopView, surface: PlySurface, image: Array, colours: str,
-    limits: tuple[float, float], extend: str = "neither",
+    limits: tuple[float, float], extend: str = "neither", under: str | None = None,
 ) -> Any:  # fmt: skip
-    """Draw an image in a colour map with a little relief, and its colour bar."""
+    """Draw an image in a colour map with a little relief, and its colour bar; `under`: colour below the limits."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    scale = ScalarMappable(Normalize(limits[0], limits[1]), colormaps[colours])
+    scale = ScalarMappable(Normalize(limits[0], limits[1]), colormaps[colours].with_extremes(under=under))
     rgb = scale.to_rgba(np.nan_to_num(image), norm=True)[..., :3]
     x = fill_inactive(surface.x, surface.active)
     light = np.clip(brightness(view, x, surface.cell_fraction > 0, cast=False)[0], 0.0, 1.2)
@@ -166,7 +178,9 @@ def coloured(
     axes.imshow(rgb, extent=view.box, origin="lower", interpolation="antialiased")
     edge = view.covered.astype(float)
     axes.contour(edge, levels=[0.5], colors=figures.MUTED, linewidths=0.7, extent=view.box, origin="lower")
-    return figure.colorbar(scale, ax=axes, shrink=0.85, extend=extend)
+    bar = figure.colorbar(scale, ax=axes, shrink=0.85, extend=extend)
+    bar.ax.tick_params(labelsize=figures.NOTE_PT)
+    return bar
 
 
 def _seen(sheet: SheetSnapshot) -> Array:

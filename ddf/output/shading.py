@@ -15,6 +15,7 @@ AMBIENT = 0.34
 PENUMBRA_MM = 2.0  # how far a ray may pass below an edge until it is dark
 SKY_RADIUS_MM = 7.0  # hollows of this size are darker
 
+FLOOR_LEAST = 0.62  # the floor's least brightness: under a raised edge the sheet is what is looked at
 CLOTH = (0.80, 0.79, 0.755)
 RUBBER = (0.80, 0.70, 0.57)
 FLOOR = (0.885, 0.895, 0.905)
@@ -85,6 +86,7 @@ def photograph(
 ) -> Array:
     """RGB image (rows, columns, 3), 0..1. `ink` (rows, columns), 0..1, darkens the sheet: drawn lines."""
     light, highlight = brightness(view, x, exists, gloss)
+    light = np.where(view.covered, light, np.maximum(light, FLOOR_LEAST))
     base = np.where(view.covered[..., None], colour, FLOOR)
     if ink is not None:
         base = base * (1.0 - ink[..., None])

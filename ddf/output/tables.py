@@ -87,7 +87,7 @@ def write_profiles(folder: RunFolder, surfaces: Iterable[PlySurface]) -> None:
             for loop, pair in enumerate(zip(profile.initial, profile.deformed, strict=True), start=1)
             for point, (start, end) in enumerate(zip(*pair, strict=True), start=1)
         ]
-        _write(folder, f"profiles/{surface.name}.csv", header, rows)
+        write_table(folder, f"profiles/{surface.name}.csv", header, rows)
 
 
 def write_pattern(folder: RunFolder, surface: PlySurface) -> None:
@@ -100,10 +100,10 @@ def write_pattern(folder: RunFolder, surface: PlySurface) -> None:
     rows: list[list[Any]] = []
     for loop, (points, grid) in enumerate(zip(loops, surface.outline, strict=True), start=1):
         rows += [[loop, k, *uv, *flat[:2]] for k, (flat, uv) in enumerate(zip(points, grid, strict=False), start=1)]
-    _write(folder, f"patterns/{surface.name}.csv", ["loop", "point", "u", "v", "x0_mm", "y0_mm"], rows)
+    write_table(folder, f"patterns/{surface.name}.csv", ["loop", "point", "u", "v", "x0_mm", "y0_mm"], rows)
     header = ["row", "col", "x0_mm", "y0_mm", "x_mm", "y_mm", "z_mm"]
     nodes = [[int(i), int(j), *surface.x0[:2, i, j], *surface.x[:, i, j]] for i, j in np.argwhere(surface.active)]
-    _write(folder, f"patterns/{surface.name}-nodes.csv", header, nodes)
+    write_table(folder, f"patterns/{surface.name}-nodes.csv", header, nodes)
 
 
 def write_wrinkles(folder: RunFolder, results: Iterable[WrinkleResult]) -> None:
@@ -115,7 +115,7 @@ def write_wrinkles(folder: RunFolder, results: Iterable[WrinkleResult]) -> None:
         for result in results
         for number, wrinkle in enumerate(result.wrinkles, start=1)
     ]
-    _write(folder, "wrinkles.csv", header, rows)
+    write_table(folder, "wrinkles.csv", header, rows)
 
 
 def write_metrics(folder: RunFolder, plies: Sequence[Mapping[str, Any]], **more: Any) -> None:
@@ -142,12 +142,13 @@ def _cut(folder: RunFolder, step: int) -> list[str] | None:
     return lines[0].strip().split(",")
 
 
-def _write(folder: RunFolder, name: str, header: list[str], rows: list[list[Any]]) -> None:
+def write_table(folder: RunFolder, name: str, header: list[str], rows: list[list[Any]]) -> Path:
+    """Write rows as CSV, floats with nine digits, and return its path. Raises DdfError."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
     writer.writerows([[_cell(value) for value in row] for row in rows])
-    folder.write_text(name, text.getvalue())
+    return folder.write_text(name, text.getvalue())
 
 
 def _cell(value: Any) -> Any:

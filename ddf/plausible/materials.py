@@ -26,6 +26,10 @@ def examine_materials(case: Case, found: Findings) -> None:
         if max(weave.bending_rigidity_Nmm) > solid:
             problem = f"{max(weave.bending_rigidity_Nmm):g} is more than that of a solid plate of this modulus"
             found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f"<= {solid:.3g}; check the units")
+    for number, ply in enumerate(case.plies):
+        if ply.formulation == "shell-membrane" and woven_material(case, ply.material).in_plane_bending_Nmm > 0.0:
+            problem = "shell-membrane elements have no in-plane bending, which the material asks for"
+            found.fault(("plies", number, "formulation"), problem, "lattice, or in_plane_bending_Nmm = 0")
     name = case.diaphragms.material
     terms = hyperelastic_material(case, name).abaqus_terms
     modulus = ogden.initial_shear_modulus(terms)

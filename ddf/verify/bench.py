@@ -81,7 +81,7 @@ def assemble(
     lines = [np.concatenate([np.diff(s.lines[0]), np.diff(s.lines[1])]) for s in sheets]
     model = Model(
         sheets=records, blocks=row_blocks(records), pairs=pairs, **_pools(sheets, records), lines=np.concatenate(lines),
-        shear_tables=tables, ogden=_terms(sheets), exposed=exposed,
+        shear_tables=tables, tangents=np.zeros((1, 1)), ogden=_terms(sheets), exposed=exposed,
         tool=tool.field.values if tool else np.zeros((2, 2, 2, 4), np.float32),
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
@@ -149,7 +149,7 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray
             area=np.where(s.held, 0.0, area).ravel(), bar1=bar1.ravel(), bar2=bar2.ravel(),
             cell=np.pad(s.cells, ((0, 1), (0, 1))).ravel(), triple1=triple1.ravel(), triple2=triple2.ravel(),
             row_span=np.tile(np.array([0, m], np.int64), (n, 1)), weight=tangent_weights(bar1, bar2).ravel(),
-            centre=patch_centres(np.ones((n, m), bool)).ravel(),
+            centre=patch_centres(np.ones((n, m), bool)).ravel(), cover=np.ones(n * m),
         )  # fmt: skip
     pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
     pools["row_first"] = np.cumsum([0, *(int(n) for n in records["rows"][:-1])]).astype(np.int64)

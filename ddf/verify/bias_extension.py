@@ -24,7 +24,10 @@ from __future__ import annotations
 import numpy as np
 
 from ddf.elements.shear import shear_sine
+from ddf.elements.shell_membrane.history import HISTORY, M_E1, M_E2
 from ddf.errors import UnstableError
+from ddf.model import PLY, sheet_shells
+from ddf.scene import Scene
 from ddf.simulate import Simulation
 from ddf.verify.net import Net, least_energy, make_net, mean_shear
 from ddf.verify.probe import acting_forces
@@ -63,17 +66,21 @@ def grip_force(angle: FloatArray, law: tuple[FloatArray, FloatArray]) -> FloatAr
 
 
 def draw_strip(options: Options, cells: int, halts_deg: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shear angles in the middle [deg] and forces on the grips [N] of a strip along the fibres, see `draw`."""
+    diagonal = WIDTH_MM / cells
+    size = (WIDTH_MM, HEIGHT_MM + 2.0 * diagonal)
+    return draw(ply_scene(fabric_of(options), size, diagonal / np.sqrt(2.0), 45.0), DAMPING_1_S, halts_deg)
+
+
+def draw(plain: Scene, damping_1_s: float, halts_deg: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Shear angles in the middle [deg] and forces on the grips [N] at the ways of the halts.
 
     NaN from the first halt on at which the strip does not come to rest.
     """
-    diagonal = WIDTH_MM / cells
-    size = (WIDTH_MM, HEIGHT_MM + 2.0 * diagonal)
-    plain = ply_scene(fabric_of(options), size, diagonal / np.sqrt(2.0), 45.0)
     start = positions(plain).copy()
-    upper, lower = start[1] > 0.5 * HEIGHT_MM - 0.01 * diagonal, start[1] < -0.5 * HEIGHT_MM + 0.01 * diagonal
-    scene = held(damped(plain, DAMPING_1_S), upper | lower)
-    x = positions(scene)
+    near = 1e-3 * WIDTH_MM
+    upper, lower = start[1] > 0.5 * HEIGHT_MM - near, start[1] < -0.5 * HEIGHT_MM + near
+    scene = held(damped(plain, damping_1_s), upper | lower)
     centre = 0.25 * (start[:2, 1:, 1:] + start[:2, :-1, 1:] + start[:2, 1:, :-1] + start[:2, :-1, :-1])
     middle = np.hypot(*centre) < MIDDLE_MM
     sim, angles, forces, gone = Simulation(scene), [], [], 0.0
@@ -87,11 +94,19 @@ def draw_strip(options: Options, cells: int, halts_deg: FloatArray) -> tuple[Flo
             settle(sim, REST_MM_S, LONGEST_REST_S)
         except UnstableError:
             break
-        angles.append(np.rad2deg(np.abs(np.arcsin(shear_sine(x)))[middle].mean()))
+        angles.append(np.rad2deg(np.abs(_shear_angles(scene))[middle].mean()))
         pull = acting_forces(scene)[1]
         forces.append(0.5 * float(pull[lower].sum() - pull[upper].sum()))
     lost = [np.nan] * (halts_deg.size - len(forces))
     return np.array(angles + lost), np.array(forces + lost)
+
+
+def _shear_angles(scene: Scene) -> FloatArray:
+    """Shear angles of the cells [rad], (n-1, m-1): of the lattice's edges, or what shell-membrane cells accumulated."""
+    if scene.model.sheets[0]["kind"] == PLY:
+        return np.asarray(np.arcsin(shear_sine(positions(scene))))
+    past = sheet_shells(scene.model, scene.state.history, 0, HISTORY)
+    return np.asarray((past[M_E1] + past[M_E2])[:-1, :-1])
 
 
 def _pull(net: Net, angle: float, law: tuple[FloatArray, FloatArray]) -> float:

@@ -2,7 +2,8 @@
 
 A strip of the lattice along a family, its fibres stiff and its bending soft, is an elastica with hinges at the
 nodes. The hinge of the last clamped node stands for half a bar before and behind it, so the clamp ends half a
-bar before that node: the strip has L = (cells - 1/2) a. Errors then fall as a^2.
+bar before that node: the strip has L = (cells - 1/2) a. Errors then fall as a^2. Shell-membrane cells clamp the
+directors of the held nodes themselves: L = cells a.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from ddf.verify.cantilever import Cantilever
 from ddf.verify.elastica import heavy_elastica
-from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem
+from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, Answer, Check, Curve, Figure, FloatArray, Options, Problem
 from ddf.verify.scenes import areal_mass, fabric_of, held, ply_scene, positions
 
 LENGTH_MM = 40.0
@@ -29,12 +30,13 @@ BOUND = 0.005
 def _cantilever(options: Options, element_mm: float) -> Cantilever:
     fabric = fabric_of(options, bending=True)
     cells = max(4, round(LENGTH_MM / element_mm + 0.5))
-    a = LENGTH_MM / (cells - 0.5)
-    scene = ply_scene(fabric, (2.0 * a, cells * a), a)
+    clamped = 0.0 if options.shell else 0.5  # of a cell
+    a = LENGTH_MM / (cells - clamped)
+    scene = ply_scene(fabric, (2.0 * a, cells * a), a, formulation=options.formulation)
     x = positions(scene)
-    x[1] += 0.5 * a * (cells - 1)  # the middle of the first bar is at y = 0
+    x[1] += a * (0.5 * cells - clamped)  # the clamp ends at y = 0
     clamp, tip = np.zeros(x.shape[1:], bool), np.zeros(x.shape[1:], bool)
-    clamp[:, :2] = tip[:, -1] = True
+    clamp[:, : 1 if options.shell else 2] = tip[:, -1] = True
     return Cantilever(held(scene, clamp), LENGTH_MM, fabric.bending_rigidity_Nmm[1], areal_mass(fabric), tip)
 
 
@@ -87,4 +89,5 @@ PROBLEM = Problem(
     "Cantilever under its own weight, 0/90",
     "heavy elastica, Peirce 1930, Bickley 1934; boundary value problem solved here",
     solve,
+    (LATTICE, SHELL_MEMBRANE),
 )

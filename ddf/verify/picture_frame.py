@@ -22,7 +22,18 @@ from ddf.case.schema import WovenMaterial
 from ddf.elements.shear import shear_sine
 from ddf.simulate import Simulation
 from ddf.verify.probe import acting_forces
-from ddf.verify.problem import Answer, Check, Curve, Figure, FloatArray, Options, Problem, worst
+from ddf.verify.problem import (
+    LATTICE,
+    SHELL_MEMBRANE,
+    Answer,
+    Check,
+    Curve,
+    Figure,
+    FloatArray,
+    Options,
+    Problem,
+    worst,
+)
 from ddf.verify.scenes import damped, entered_law, fabric_of, held, lead, ply_scene, positions, settle
 
 SIDE_MM = 100.0
@@ -48,9 +59,9 @@ def _turned(start: FloatArray, angle: float) -> tuple[FloatArray, FloatArray]:
     )
 
 
-def shear_frame(fabric: WovenMaterial, element_mm: float) -> tuple[FloatArray, FloatArray]:
+def shear_frame(fabric: WovenMaterial, element_mm: float, formulation: str = LATTICE) -> tuple[FloatArray, FloatArray]:
     """N_s [N/mm] out of the frame at ANGLES_DEG, and how far any cell is off the frame's angle there [deg]."""
-    scene = damped(ply_scene(fabric, (SIDE_MM, SIDE_MM), element_mm), DAMPING_1_S)
+    scene = damped(ply_scene(fabric, (SIDE_MM, SIDE_MM), element_mm, formulation=formulation), DAMPING_1_S)
     start = positions(scene).copy()
     edge = np.ones(start.shape[1:], bool)
     edge[1:-1, 1:-1] = False
@@ -84,7 +95,7 @@ def solve(options: Options) -> Answer:
         fabric = fabric_of(options).model_copy(update={"shear_law": law})
         angle, entered = entered_law(fabric)
         expected = np.interp(np.deg2rad(ANGLES_DEG), angle, entered)
-        got, uneven = shear_frame(fabric, element)
+        got, uneven = shear_frame(fabric, element, options.formulation)
         checks.append(worst(f"N_s, {law} law", "N/mm", at, expected, got, BOUND))
         off = float(uneven.max())
         checks.append(Check(f"cells off the frame's angle, {law} law", "deg", 0.0, off, EVEN_BOUND_DEG, relative=False))
@@ -104,5 +115,9 @@ def solve(options: Options) -> Answer:
 
 
 PROBLEM = Problem(
-    "picture-frame", "Picture frame to 60 deg, both shear laws", "the entered law; Cao et al. 2008", solve
+    "picture-frame",
+    "Picture frame to 60 deg, both shear laws",
+    "the entered law; Cao et al. 2008",
+    solve,
+    (LATTICE, SHELL_MEMBRANE),
 )

@@ -13,6 +13,8 @@ from ddf.case.schema import HyperelasticMaterial, WovenMaterial
 
 FloatArray = NDArray[np.float64]
 
+LATTICE, SHELL_MEMBRANE = "lattice", "shell-membrane"
+
 
 @dataclass(frozen=True)
 class Options:
@@ -22,7 +24,13 @@ class Options:
     element_mm: float | None = None
     fabric: WovenMaterial | None = None
     rubber: HyperelasticMaterial | None = None
+    formulation: str = "lattice"  # of plies; the other one is SHELL_MEMBRANE
     threads: int = 1
+
+    @property
+    def shell(self) -> bool:
+        """Whether plies are of shell-membrane cells."""
+        return self.formulation == SHELL_MEMBRANE
 
 
 @dataclass(frozen=True)
@@ -100,3 +108,4 @@ class Problem:
     title: str
     source: str  # where the known answer comes from
     solve: Callable[[Options], Answer] = field(repr=False)
+    formulations: tuple[str, ...] = (LATTICE,)  # of plies, that it can be solved with

@@ -84,6 +84,7 @@ def _write_results(out: RunFolder, outcomes: Sequence[Outcome], options: Options
         "element_mm": options.element_mm,
         "fabric": None if options.fabric is None else options.fabric.model_dump(),
         "rubber": None if options.rubber is None else options.rubber.model_dump(),
+        "formulation": options.formulation,
         "threads": options.threads,
     }
     total = round(sum(o.wall_s for o in outcomes), 3)

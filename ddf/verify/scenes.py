@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ddf.build import build_scene, state_at_rest
+from ddf.build import build_scene, state_at_rest, stiffest
 from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
+from ddf.elements.shell_membrane.rotations import normals
 from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
-from ddf.model import Model, State, sheet_vectors
+from ddf.model import Model, State, sheet_shells, sheet_vectors
 from ddf.scene import Scene
 from ddf.simulate import Simulation
-from ddf.verify.problem import FloatArray, Options
+from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, FloatArray, Options
 
 Table = dict[str, Any]
 
@@ -75,16 +76,29 @@ def case_scene(
 
 
 def ply_scene(
-    fabric: WovenMaterial, size_mm: Sequence[float], element_mm: float, orientation_deg: float = 0.0
-) -> Scene:
-    """A rectangular ply of that size about the origin, in the plane z = 0, free, at rest, undamped, without gravity."""
-    whole = case_scene(fabric, size_mm, element_mm, ply={"orientation_deg": orientation_deg})
+    fabric: WovenMaterial, size_mm: Sequence[float], element_mm: float, orientation_deg: float = 0.0,
+    formulation: str = LATTICE, fibre_deg: float = 0.0, **solver: float,
+) -> Scene:  # fmt: skip
+    """A rectangular ply of that size about the origin, in the plane z = 0, free, at rest, undamped, without gravity.
+
+    orientation_deg: of the grid; fibre_deg: of family 1 to the grid, of a shell-membrane ply only; solver: keys of the
+    case's solver.
+    """
+    ply = {"orientation_deg": orientation_deg, "formulation": formulation}
+    whole = case_scene(fabric, size_mm, element_mm, ply=ply, solver=dict(solver))
     scene = damped(alone(whole, 1), 0.0)
     sheet = scene.model.sheets[0]
     tangent = shear_law.largest_tangent(*entered_law(fabric))
     spacing, rigidity = (float(sheet["a1"]), float(sheet["a2"])), (float(sheet["bend1"]), float(sheet["bend2"]))
-    omega2 = timestep.ply_omega2(tangent, rigidity, spacing, 0.0, areal_mass(fabric))
-    limit = 2.0 / math.sqrt(omega2)
+    mass = areal_mass(fabric) * whole.sheets[1].mass_scaling
+    if formulation == SHELL_MEMBRANE:
+        sheet["fibre"] = np.deg2rad(fibre_deg)
+        omega2 = timestep.shell_membrane_omega2(
+            stiffest(fabric), tangent, fabric.transverse_shear_N_mm, spacing, 0.0, mass
+        )
+        limit = timestep.damped_limit(math.sqrt(omega2), whole.case.solver.fibre_damping)
+    else:
+        limit = 2.0 / math.sqrt(timestep.ply_omega2(tangent, rigidity, spacing, 0.0, mass))
     safe = scene.case.solver.step_safety * limit
     sheet_vectors(scene.model, scene.state.x, 0)[2] = 0.0
     return replace(scene, model=scene.model._replace(dt=safe), step_limit=safe)
@@ -98,9 +112,9 @@ def alone(scene: Scene, k: int) -> Scene:
     blocks = model.blocks[model.blocks["sheet"] == k].copy()
     blocks["sheet"] = 0
     sheets = model.sheets[k : k + 1].copy()
-    sheets["node"] = 0
+    sheets["node"] = sheets["shell"] = 0
     spans = int(model.row_first[k])
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2")
+    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
     small = model._replace(
         sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,
@@ -140,6 +154,17 @@ def held(scene: Scene, mask: NDArray[np.bool_], k: int = 0) -> Scene:
     place = first + np.flatnonzero(mask)
     mass[place] = inverse[place] = 0.0
     return replace(scene, model=model._replace(mass=mass, inverse_mass=inverse))
+
+
+def directors(scene: Scene, k: int = 0) -> FloatArray:
+    """Directors (3, rows, cols) of sheet k, a shell-membrane ply, a view."""
+    return sheet_shells(scene.model, scene.state.director, k, 3)
+
+
+def erect_directors(scene: Scene, clamp: NDArray[np.bool_], k: int = 0) -> None:
+    """Put the directors of sheet k normal to it where it is now; those of clamped nodes (rows, cols) along z."""
+    directors(scene, k)[:] = normals(positions(scene, k))
+    directors(scene, k)[:, clamp] = np.array([0.0, 0.0, 1.0])[:, None]
 
 
 def positions(scene: Scene, k: int = 0) -> FloatArray:

@@ -120,13 +120,13 @@ def test_contact_of_a_pair(benchmark, state):
     still, slip, buffer, out = np.zeros_like(xs), np.zeros((2, n, n)), np.zeros((m, m, 4)), np.zeros(4)
     span, scratch = np.tile(np.array([NOWHERE, 0]), (m, 1)), tuple(part[0] for part in chunk_scratch(1))
     rates = np.zeros((m, m, 4))
-    packed = np.ascontiguousarray(np.moveaxis(np.concatenate([xm, np.zeros((1, m, m))]), 0, -1))
+    packed = np.ascontiguousarray(np.moveaxis(np.concatenate([xm, np.ones((1, m, m))]), 0, -1))
     reach = 1e6 if state != "resting" else 1e-6
     rest = np.zeros((n, n), np.int8)
 
     def run():
         layer_forces(
-            xs, still, fs, area, packed, rates, cell, centre, place, slip, rest, buffer, span, pair[0],
+            xs, still, fs, area.copy(), area, packed, rates, cell, centre, place, slip, rest, buffer, span, pair[0],
             reach, 1e-5, 0, n, scratch, out,
         )  # fmt: skip
 

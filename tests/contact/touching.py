@@ -6,7 +6,7 @@ import numpy as np
 
 from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces, touched
 from ddf.contact.patch import patch_centres
-from ddf.contact.tool import CARRY, FREE, PRESS, tool_forces
+from ddf.contact.tool import FREE, PRESS, tool_forces
 from ddf.model import PAIR
 
 
@@ -18,9 +18,9 @@ def make_pair(**values):
     return pair[0]
 
 
-def packed(x):
-    """Positions (3, n, m) as contact wants a master's: (n, m, 4), the last component 0."""
-    return np.ascontiguousarray(np.moveaxis(np.concatenate([x, np.zeros((1, *x.shape[1:]))]), 0, -1))
+def packed(x, cover=1.0):
+    """Positions (3, n, m) as contact wants a master's: (n, m, 4), the last component its cover."""
+    return np.ascontiguousarray(np.moveaxis(np.concatenate([x, np.broadcast_to(cover, (1, *x.shape[1:]))]), 0, -1))
 
 
 class Layers:
@@ -30,7 +30,7 @@ class Layers:
         self.pair = pair
         self.shape, self.master = xs.shape[1:], xm.shape[1:]
         self.area = np.full(self.shape, area)
-        self.cell = np.ones(self.master)
+        self.cell, self.cover = np.ones(self.master), 1.0
         self.centre = patch_centres(np.ones(self.master, bool))
         origin = xm[:2, 0, 0].reshape(2, 1, 1)
         start = (xs[:2] - origin) / spacing
@@ -57,7 +57,8 @@ class Layers:
             rest = np.zeros(self.shape, np.int8)
             scratch = tuple(part[0] for part in chunk_scratch(1))
             layer_forces(
-                xs, vs, fs, self.area, packed(xm), packed(vm), self.cell, self.centre, self.place, self.slip, rest,
+                xs, vs, fs, np.zeros(self.shape), self.area, packed(xm, self.cover), packed(vm, 0.0), self.cell,
+                self.centre, self.place, self.slip, rest,
                 buffer, span, self.pair, 1e6, dt, low, high, scratch, self.out,
             )  # fmt: skip
             for i in range(self.master[0]):
@@ -104,25 +105,26 @@ class Tool:
         self.area = x[:, None] * y[None, :]
         self.out, self.work = np.zeros(4), 0.0
 
-    def forces(self, x, v=None, *, z=0.0, speed=0.0, dt=1e-6, seam=None):
+    def forces(self, x, v=None, *, others=None, mass=None, z=0.0, speed=0.0, dt=1e-6, seam=None):
+        """The tool's forces; others: all other forces on nodes, mass (n, m); without them nodes go on as they do."""
         n, m = x.shape[1:]
-        f = np.zeros_like(x)
+        others = np.zeros_like(x) if others is None else others
+        inverse = np.zeros((n, m)) if mass is None else np.where(mass > 0.0, 1.0 / np.where(mass > 0.0, mass, 1.0), 0.0)
         v = np.zeros_like(x) if v is None else v
         self.out, self.work = np.zeros(4), 0.0
         self.press, pressed = np.zeros((n, m, PRESS)), np.zeros(n, bool)
         sleep = np.zeros((n, m), np.int16)
         for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
-            carry = np.zeros((m + 2, CARRY))
+            carry = np.zeros((m + 2, PRESS))
             work, _ = tool_forces(
-                x, v, f, self.press, pressed, carry, self.area, self.dx, self.dy,
+                x, v, others, inverse, self.press, pressed, carry, self.area, self.dx, self.dy,
                 self.values, self.origin, self.spacing, self.law, (z, speed), 1e6, dt, self.anchors, sleep, low, high,
-                self.out, np.zeros(CARRY),
+                self.out, np.zeros(PRESS),
             )  # fmt: skip
             self.work += work
             if high < n:
-                f[:, high] += carry[:m, :3].T
-                self.press[high] += carry[:m, 3:]
-        return f
+                self.press[high] += carry[:m]
+        return np.moveaxis(self.press[..., :3], -1, 0).copy()
 
 
 def inclined_plane(degrees):

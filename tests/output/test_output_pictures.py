@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -77,7 +75,7 @@ def test_every_picture_is_drawn_and_the_report_holds_it(scene, folder, monkeypat
         "distance-ply-2": plots.draw_distance(surface),
         "outline-ply-2": plots.draw_outline(surface, one_wrinkle(), scene.tool_mesh),
         "energies": charts.draw_energies(FinishedRun(folder.path).history()),
-        "stages": charts.draw_stages([replace(snapshot, stage="evacuate"), snapshot]),
+        "stages": charts.draw_stages(scene.path, [(0.01, surface), (0.03, surface)]),
     }
     for name, figure in pictures.items():
         save_picture(folder, name, figure)

@@ -24,6 +24,12 @@ FAULTS = {
     "nothing happens": (FLAT, ["process.stages.0.cavity_pressure_kPa=101.325"], "process.stages", "nothing happens"),
     "a tool like a bullet": (COARSE, [LIFT + "duration_s=1e-5"], LIFT + "tool_lift_mm", "moves at 1.0"),
     "a torn diaphragm": (COARSE, [LIFT + "tool_lift_mm=2000"], LIFT + "tool_lift_mm", "stretch the diaphragm"),
+    "in-plane bending that the elements lack": (
+        COARSE,
+        [WEAVE % "in_plane_bending_Nmm=0.1", "plies.0.material=w", "plies.0.formulation=shell-membrane"],
+        "plies.0.formulation",
+        "no in-plane bending",
+    ),
     "more memory than there is": (
         COARSE,
         ["plies.0.element_mm=0.2", "plies.0.size_mm=[9000, 9000]", "frame.length_mm=10000", "frame.width_mm=10000"],

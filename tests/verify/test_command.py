@@ -84,3 +84,9 @@ def test_a_miss_and_an_error_exit_with_4_after_all_others(run, tmp_path):
 def test_checks(got, passed):
     assert Check("force", "N", 1.0, got, 0.01).passed is passed
     assert worst("force", "N", ["a", "b"], np.ones(2), np.array([1.0, got]), 0.01).passed is passed
+
+
+def test_a_problem_of_the_other_formulation_is_a_usage_error(run):
+    result = run("near", "--formulation", "shell-membrane")
+    assert result.exit_code == 2
+    assert "not a problem of the formulation shell-membrane: near" in result.output
