@@ -3,7 +3,8 @@
 numba notices that a kernel's own file has changed, but not that a function it calls in another file has. So
 the cache folder carries a digest of every source that holds kernels and of all that these import from the
 package: a changed kernel never meets old machine code, and a changed report recompiles nothing. The folder is
-below DDF_CACHE_DIR, else NUMBA_CACHE_DIR, else the user's cache folder, else (not writable) a temporary one.
+below DDF_CACHE_DIR, else NUMBA_CACHE_DIR, else the user's cache folder (XDG_CACHE_HOME); where that cannot be written
+to, below the user's own folder among the temporary files, which the next run finds again.
 
 A process that compiles kernels and one that loads them do not compute the same last digits: the first calls the
 copies of shared functions that it compiled one by one, the second those that were optimised within each kernel.
@@ -16,14 +17,18 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import stat
 import sys
 import tempfile
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from ddf.errors import DdfError
+
 IMPORT = re.compile(r"^from (ddf[\w.]*) import (\([^)]*\)|[\w, ]+)", re.MULTILINE)
+TEMPORARY = "ddf-kernels-"
 
 
 def kernel_sources(package: Path) -> list[Path]:
@@ -57,32 +62,61 @@ def source_digest(package: Path) -> str:
     return digest.hexdigest()[:16]
 
 
-def use_cache() -> Path:
-    """Point numba at this package's own cache folder and return it."""
+def use_cache() -> Path | None:
+    """Point numba at this package's own cache folder and return it; None where no folder can be written to."""
+    digest = source_digest(Path(__file__).parent)
+    for place in (_wanted_place, _temporary_place):
+        with suppress(OSError):
+            base = place()
+            folder = base if base.name == digest else base / digest  # handed on by a process that has set it
+            folder.mkdir(parents=True, exist_ok=True)
+            if os.access(folder, os.W_OK):
+                os.environ["NUMBA_CACHE_DIR"] = str(folder)
+                return folder
+    os.environ.pop("NUMBA_CACHE_DIR", None)
+    return None
+
+
+def _wanted_place() -> Path:
+    """Where compiled kernels should be kept."""
     given = os.environ.get("DDF_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    base = Path(given) if given else Path(home) / "ddf"
-    digest = source_digest(Path(__file__).parent)
-    folder = base if base.name == digest else base / digest  # handed on by a process that has set it
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if not os.access(folder, os.W_OK):
-            raise PermissionError(folder)
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="ddf-cache-")) / folder.name
-        folder.mkdir()
-    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    return Path(given) if given else Path(home) / "ddf"
+
+
+def _temporary_place() -> Path:
+    """The user's own folder among the temporary files, the same one each time. Raises OSError where there is none.
+
+    What is loaded from it runs as this user, so that one to which others can write is not used.
+    """
+    user = os.getuid() if hasattr(os, "getuid") else 0
+    folder = Path(tempfile.gettempdir()) / f"{TEMPORARY}{user}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if hasattr(os, "getuid") and (found.st_uid != user or not stat.S_ISDIR(found.st_mode) or found.st_mode & 0o022):
+        return Path(tempfile.mkdtemp(prefix=TEMPORARY))
     return folder
+
+
+def cache_note() -> str:
+    """Where compiled kernels are, if the usual place cannot be written to: a line for the log, else empty."""
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
+    if not folder.parent.name.startswith(TEMPORARY):
+        return ""
+    return f"the cache folder cannot be written to: kernels are kept in {folder} (DDF_CACHE_DIR chooses another)"
 
 
 def warm_kernels() -> None:
     """Compile all kernels in a process of their own, unless that was done; others that need them wait.
 
-    Where that process fails, a warning says so, and kernels are compiled where they are used.
+    Where that process fails, a warning says so, and kernels are compiled where they are used. Raises DdfError where
+    there is no place for them.
     """
     import subprocess
     from importlib.metadata import version
 
+    if "NUMBA_CACHE_DIR" not in os.environ:
+        raise DdfError("compiled kernels can be kept nowhere", "set DDF_CACHE_DIR to a folder that can be written to")
     package = Path(__file__).resolve().parent
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
     mark = f"{package} {sys.version} numba {version('numba')} llvmlite {version('llvmlite')}"

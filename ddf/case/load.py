@@ -20,6 +20,7 @@ from ddf.case.overrides import Override, apply_overrides, override_of
 from ddf.case.rules import key_problems
 from ddf.case.schema import Case
 from ddf.errors import CaseError, Fault
+from ddf.shipped import file_or_shipped, shipped_names
 
 MAX_BYTES = 1_000_000
 TOOL_SUFFIXES = (".step", ".stp", ".stl")
@@ -48,7 +49,7 @@ class Source:
 
 
 def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
-    """Read a case file, change it by `overrides` such as "solver.threads=1", and check everything.
+    """Read a case file, or the shipped case of that name, change it by `overrides` such as "solver.threads=1", check.
 
     The value of an override is TOML; text may come without quotes. Items of lists go by their place from
     0, as in "plies.0.element_mm=4". Raises CaseError with every fault found.
@@ -58,8 +59,8 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> Case:
 
 def load_source(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Case, Source]:
     """Do as `load_case` does, and return the source too, for what is found wrong with the case later."""
-    file = str(path)
-    text = read_text(Path(path), file)
+    file = str(file_or_shipped("cases", Path(path), str(path)))
+    text = read_text(Path(file), file)
     raw, changes, faults = apply_overrides(parse_toml(text, file), overrides)
     source = Source(file, text, changes)
     return _build(raw, source, faults), source
@@ -102,7 +103,9 @@ def read_text(path: Path, file: str) -> str:
             raise _refusal(file, "is a directory", "a TOML file")
         if not path.exists():
             siblings = [item.name for item in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-            raise _refusal(file, "no such file", "a TOML file", closest(path.name, siblings))
+            shipped = shipped_names("cases")
+            near = path.stem if path.stem in shipped else closest(path.name, siblings) or closest(path.stem, shipped)
+            raise _refusal(file, "no such file", f"a TOML file, or a shipped case: {', '.join(shipped)}", near)
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
         if len(data) > MAX_BYTES:
@@ -161,7 +164,7 @@ def _with_tool_path(raw: dict[str, Any], folder: Path) -> tuple[dict[str, Any], 
     path = ("tool", "file")
     suffixes = ", ".join(TOOL_SUFFIXES)
     try:
-        found = (folder / name).resolve()
+        found = file_or_shipped("meshes", (folder / name).resolve(), name)
         exists = found.is_file()
     except (OSError, ValueError, RuntimeError):
         return raw, [Problem(path, f"{shown(name)} cannot be a file", suffixes)]

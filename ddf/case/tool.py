@@ -51,7 +51,9 @@ class Tool(Section):
         description="Radius of the rounded edges [mm], any shape but file (inferred).",
     )
     file: str | None = Field(
-        default=None, description="STEP or STL file, relative to the case file: shape 'file'. Made absolute."
+        default=None,
+        description="STEP or STL file, relative to the case file, or a shipped one by its name without suffix: "
+        "shape 'file'. Made absolute.",
     )
     unit: Literal["mm", "m", "inch"] = Field(default="mm", description="Unit of length in the file: shape 'file'.")
     position_mm: Point = Field(default=(0.0, 0.0), description="Tool's centre from the frame's centre [mm].")

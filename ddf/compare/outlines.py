@@ -40,7 +40,8 @@ class RigidFit:
 
     def apply(self, points: Array) -> Array:
         """Points (k, 2) after the motion."""
-        return points @ _turn(np.radians(self.turn_deg)).T + np.array(self.shift_mm)
+        moved: Array = points @ _turn(np.radians(self.turn_deg)).T + np.array(self.shift_mm)
+        return moved
 
 
 def along(loops: list[Array], step_mm: float = SAMPLE_MM) -> Array:
@@ -97,7 +98,8 @@ def fit_points(points: Array, loops: list[Array]) -> RigidFit:
     tree, middle = cKDTree(samples), samples.mean(axis=0)
 
     def sampled(moved: Array) -> Array:
-        return samples[tree.query(moved)[1]]
+        nearest: Array = samples[tree.query(moved)[1]]
+        return nearest
 
     starts = [_turn(2 * np.pi * k / STARTS) for k in range(STARTS)]
     tried = [_iterate(points, sampled, turn, middle - turn @ points.mean(axis=0)) for turn in starts]

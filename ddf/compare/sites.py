@@ -41,7 +41,8 @@ def chord(wrinkle: Row) -> Array:
     """Points (SAMPLES, 2) along the straight line from a wrinkle's start to its end, in plan."""
     ends = np.array([[wrinkle[f"{end}_{axis}_mm"] for axis in "xy"] for end in ("start", "end")])
     share = np.linspace(0.0, 1.0, SAMPLES)[:, None]
-    return (1 - share) * ends[0] + share * ends[1]
+    points: Array = (1 - share) * ends[0] + share * ends[1]
+    return points
 
 
 def apart(first: Row, second: Row) -> float:

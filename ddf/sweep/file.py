@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeGuard
@@ -14,6 +15,7 @@ from ddf.case.load import parse_toml, read_text
 from ddf.case.locate import Lines, locate
 from ddf.case.words import KeyPath, properties, range_text, type_text
 from ddf.errors import CaseError, Fault
+from ddf.shipped import file_or_shipped
 from ddf.sweep.plan import MAX_CASES, Plan, Point, Range, assignments, grid_points, latin_points, named_points
 
 RANGE_KEYS = {"low", "high", "log"}
@@ -23,7 +25,9 @@ class SweepFile(Section):
     """A sweep file."""
 
     title: str = Field(default="", max_length=500, description="What the sweep is, for its pictures.")
-    case: str = Field(min_length=1, description="The base case, relative to the sweep file.")
+    case: str = Field(
+        min_length=1, description="The base case, relative to the sweep file, or a shipped one by its name."
+    )
     method: Literal["grid", "list", "latin-hypercube"] = Field(
         description="'grid': every combination of [vary]'s lists; 'list': the [[points]]; 'latin-hypercube': "
         "`samples` draws from [vary]'s ranges {low, high, log}."
@@ -52,9 +56,8 @@ def load_sweep(path: Path, common: tuple[str, ...] = ()) -> Plan:
     if faults:
         raise _error(faults)
     every = tuple(assignments(dict(_flat(file.set, ())))) + common
-    plan = Plan(
-        file.title or path.stem, (path.parent / file.case).resolve(), _points(file), every, file.threads, file.workers
-    )
+    case = file_or_shipped("cases", Path(os.path.abspath(path.parent / file.case)), file.case)
+    plan = Plan(file.title or path.stem, case, _points(file), every, file.threads, file.workers)
     check_cases(plan, str(path), _key_lines(file, lines))
     return plan
 

@@ -16,7 +16,7 @@ from ddf.sweep.plan import Plan
 from ddf.sweep.runner import Runner, SweepProgress
 from ddf.sweep.table import sweep_rows, swept_keys, write_rows
 
-DEFAULT_CASE = "tetrahedron-0-90-coarse.toml"
+DEFAULT_CASE = "tetrahedron-0-90-coarse"
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def make_plan(what: str, case: Path | None = None, common: tuple[str, ...] = ())
     `case`: base case of a ready-made sweep, left out: the shipped coarse one. Raises CaseError, UsageError.
     """
     if what in NAMED:
-        base = case or default_case()
+        base = case or Path(DEFAULT_CASE)
         plan = Plan(f"{what}: {base.stem}", base, tuple(NAMED[what](load_case(base, common))), common)
         check_cases(plan, str(base), {})
         return plan
@@ -59,14 +59,6 @@ def make_plan(what: str, case: Path | None = None, common: tuple[str, ...] = ())
     if case is not None:
         raise UsageError("--case goes with a ready-made sweep only", "a sweep file names its own case")
     return load_sweep(path, common)
-
-
-def default_case() -> Path:
-    """The shipped coarse tetrahedron, beside the package or below the working folder."""
-    for folder in (Path("cases"), Path(__file__).resolve().parents[2] / "cases"):
-        if (folder / DEFAULT_CASE).is_file():
-            return folder / DEFAULT_CASE
-    raise UsageError(f"cases/{DEFAULT_CASE} is not here", "choose a case with --case")
 
 
 def run_sweep(

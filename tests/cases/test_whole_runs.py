@@ -1,16 +1,19 @@
 """Whole runs through the API and the command line: interruption, resumption, exit codes."""
 
 import csv
+import itertools
 import json
 import os
 import re
 import signal
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import ddf.run
+import ddf.run.loop
 from ddf.case import load_case
 from ddf.cli import main
 from ddf.errors import UsageError
@@ -72,7 +75,7 @@ def test_finished_run_opens_as_arrays(whole, case):
 
 
 def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypatch):
-    monkeypatch.setattr(ddf.run, "REPORT_EVERY_S", 0.0)
+    monkeypatch.setattr(ddf.run.loop, "REPORT_EVERY_S", 0.0)
 
     def stop_at(share, number):
         def stop(progress):
@@ -95,6 +98,53 @@ def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypa
                 assert np.array_equal(a[name], b[name]), name
     assert _rows(whole.folder) == _rows(tmp_path / "run")
     assert len(open_run(tmp_path / "run").frames("ply-1")) == 1 + 2 * len(case.process.stages)
+
+
+def test_a_clock_that_jumps_changes_nothing(whole, case, tmp_path, monkeypatch):
+    """The time of day goes back a day at each look: durations come from the monotonic clock."""
+    now = itertools.count(2e9, -86400.0)
+    monkeypatch.setattr(time, "time", lambda: next(now))
+    monkeypatch.setattr(time, "time_ns", lambda: int(1e9 * next(now)))
+    monkeypatch.setattr(ddf.run.loop, "REPORT_EVERY_S", 0.0)
+    told = []
+    result = run_case(case, tmp_path / "run", threads=1, report=told.append)
+    monkeypatch.undo()
+    wall = open_run(result.folder).history()["wall_s"]
+    assert (np.diff(wall) >= 0).all()
+    assert 0 <= wall[0] <= wall[-1] < 600
+    assert all(0 <= seconds < 600 for seconds in result.wall_s.values())
+    assert all(0 <= p.elapsed_s < 600 and 0 <= p.remaining_s < 600 for p in told)
+    assert _rows(whole.folder) == _rows(result.folder)
+
+
+def test_progress_is_true_and_memory_does_not_grow(case, tmp_path, monkeypatch):
+    """Frames and checkpoints all the time: the resident set stays, progress, history and frames say the same."""
+    often = case.output.model_copy(update={"frames_per_stage": 20, "history_interval_steps": 1, "pictures": False,
+                                           "checkpoint_interval_s": 0.1})  # fmt: skip
+    solver = case.solver.model_copy(update={"check_interval_steps": 5})
+    monkeypatch.setattr(ddf.run.loop, "REPORT_EVERY_S", 0.0)
+    told, resident = [], []
+
+    def note(progress):
+        told.append(progress)
+        resident.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 2**20)
+
+    small = case.model_copy(update={"output": often, "solver": solver})
+    run = open_run(run_case(small, tmp_path / "run", threads=1, report=note).folder)
+    steps = np.array([p.step for p in told])
+    assert (np.diff(steps) > 0).all()
+    assert steps[-1] == told[-1].steps == run.info["step"]
+    assert told[-1].remaining_s == 0
+    for p in told:
+        assert p.time_s == pytest.approx(p.step * p.step_s, rel=1e-9)
+        assert p.remaining_s == pytest.approx(p.elapsed_s * (p.steps - p.step) / p.step, rel=1e-9)
+    history = run.history()
+    assert list(history["step"][1:]) == list(steps)
+    times = [time_s for time_s, _ in run.frames("ply-1")]
+    assert len(times) == 1 + 20 * len(case.process.stages)
+    apart = np.abs(np.subtract.outer(times, history["time_s"])).min(axis=1)
+    assert apart.max() < 1e-6 * told[0].step_s * told[-1].steps  # every frame is of a step that history has too
+    assert np.median(resident[-50:]) - np.median(resident[len(resident) // 4 :][:50]) < 8.0  # MiB
 
 
 def test_a_folder_in_use_is_refused(whole, case):

@@ -75,6 +75,12 @@ process.stages = [{name = "a", duration_s = 1.0, cavity_pressure_kPa = 0}]
     assert plan.load(plan.points[1]).process.duration_s == 1.0
 
 
+def test_a_base_case_that_can_be_no_file(sweep_file):
+    for name in ("a\\u0000b", "x" * 5000, "../nowhere.toml"):
+        with pytest.raises(CaseError):
+            load_sweep(sweep_file(f'case = "{name}"\nmethod = "grid"\n[vary]\nfriction.ply_ply = [0.1]\n'))
+
+
 def test_all_faults_of_a_sweep_file_in_one_go(sweep_file):
     with pytest.raises(CaseError) as caught:
         load_sweep(sweep_file('case = "BASE"\nmethod = "gird"\nsample = 3\nworkers = 0\n'))

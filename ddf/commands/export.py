@@ -1,4 +1,4 @@
-"""`ddf export`: what is taken from a finished run to the next program."""
+"""ddf export: what is taken from a finished run to the next program."""
 
 from __future__ import annotations
 

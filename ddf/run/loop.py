@@ -1,0 +1,178 @@
+"""The loop of a run: advance to the next event, observe, write; stop with a reason.
+
+Observers never change physics. Batches of steps end at multiples of `solver.check_interval_steps`, in a run
+that is resumed as in one that is not; everything that is written is written at the end of a batch.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from logging import Logger
+
+from ddf.errors import UnstableError
+from ddf.monitors.energy import Energies, energies
+from ddf.monitors.stability import check_state
+from ddf.output.checkpoint import load_checkpoint, save_checkpoint
+from ddf.output.folder import RunFolder
+from ddf.output.snapshot import take_snapshot
+from ddf.output.tables import HistoryWriter
+from ddf.output.vtu import FrameWriter
+from ddf.run.interrupt import Interrupt
+from ddf.run.progress import Progress, Stopwatch
+from ddf.scene import Scene
+from ddf.simulate import Simulation
+
+REPORT_EVERY_S = 1.0
+"""Wall time between two progress reports [s]."""
+
+WORK_WORTH_MENTIONING = 1.0e4
+"""Energy errors are judged against at least this much work [N mm] (10 J)."""
+
+
+class Runner:
+    """The loop and what observes it."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        out: RunFolder,
+        threads: int,
+        watch: Stopwatch,
+        report: Callable[[Progress], None] | None,
+        log: Logger,
+    ) -> None:
+        self.scene, self.out, self.threads, self.watch, self.report = scene, out, threads, watch, report
+        self.log = log
+        self.start_x = scene.state.x.copy()
+        self.sim = Simulation(scene, threads)
+        self.names = [sheet.name for sheet in scene.sheets]
+        self.frames = FrameWriter(out, scene) if scene.case.output.vtu else None
+        self.frame_times = _frame_times(scene)
+        self.frames_done = 0
+        self.energy: Energies = energies(scene.model, scene.state)
+        self.earlier_wall = 0.0
+        self.history: HistoryWriter | None = None
+
+    def resume(self) -> None:
+        """Go back to the folder's checkpoint."""
+        extra = load_checkpoint(self.out, self.scene)
+        self.out.sweep()
+        self.frames_done = int(extra["frames_done"])
+        self.earlier_wall = float(extra["wall_s"])
+        self.sim.recount()
+        self.energy = energies(self.scene.model, self.scene.state)
+        self.history = HistoryWriter(self.out, self.names, self.sim.step)
+        if self.frames is not None:
+            self.frames.prune(self.sim.time)
+
+    def loop(self, interrupt: Interrupt) -> str:
+        """Advance to the end of the process; returns the reason for stopping."""
+        steps, interval = self.scene.steps, self.scene.case.solver.check_interval_steps
+        began = last_report = clock.perf_counter()
+        first_step = self.sim.step
+        if self.history is None:
+            self.history = HistoryWriter(self.out, self.names)
+            self._observe(began)
+        with self.watch("compile"):
+            self._compile()
+        if self.sim.step == 0:
+            self._checkpoint(0.0)
+        began = last_checkpoint = clock.perf_counter()
+        while self.sim.step < steps:
+            with self.watch("steps"):
+                self.sim.advance(min(interval - self.sim.step % interval, steps - self.sim.step))
+            self._guard()
+            with self.watch("output"):
+                self._observe(began)
+            now = clock.perf_counter()
+            if now - last_report > REPORT_EVERY_S or self.sim.step == steps:
+                last_report = now
+                progress = self._progress(began, first_step)
+                self.log.info("%s", progress)
+                if self.report is not None:
+                    self.report(progress)
+            due = now - last_checkpoint > self.scene.case.output.checkpoint_interval_s
+            if interrupt.caught or due or self.sim.step == steps:
+                with self.watch("output"):
+                    self._checkpoint(now - began)
+                last_checkpoint = now
+            if interrupt.caught and self.sim.step < steps:
+                return "interrupted"
+        return "finished"
+
+    def _compile(self) -> None:
+        """Compile (or load) the kernels on a copy of nothing: zero steps."""
+        self.sim.advance(0)
+
+    def _guard(self) -> None:
+        """Stop a run that has gone wrong."""
+        sim = self.sim
+        alarm = check_state(self.scene.model, self.scene.state, self.names, self.start_x)
+        if alarm is not None:
+            raise UnstableError(f"step {sim.step}, process time {sim.time:.6f} s: {alarm}", self._kept())
+
+    def _kept(self) -> str:
+        return f"output up to the last frame and checkpoint is in {self.out.path}"
+
+    def _observe(self, began: float) -> None:
+        """History, energy guard and frames that are due."""
+        sim, output, scene = self.sim, self.scene.case.output, self.scene
+        last = sim.step == scene.steps
+        interval = scene.case.solver.check_interval_steps
+        if sim.step % max(output.history_interval_steps, interval) < interval or last:
+            self.energy = energies(scene.model, scene.state)
+            wall = self.earlier_wall + clock.perf_counter() - began
+            assert self.history is not None
+            self.history.append(
+                sim.step, sim.time, self._stage(), scene.path.at(sim.time), self.energy, scene.model.dt, wall
+            )
+            self._guard_energy()
+        while self.frames_done < len(self.frame_times) and sim.time >= self.frame_times[self.frames_done] - 1e-12:
+            if self.frames is not None:
+                self.frames.write(take_snapshot(scene, scene.state))
+            self.frames_done += 1
+
+    def _guard_energy(self) -> None:
+        energy, limit = self.energy, self.scene.case.solver.energy_error_limit_percent
+        error = 100 * energy.error / max(abs(energy.total_work), WORK_WORTH_MENTIONING)
+        if not abs(error) <= limit:
+            raise UnstableError(
+                f"step {self.sim.step}, process time {self.sim.time:.6f} s: energy error of {error:.1f} % of the "
+                f"work done, over solver.energy_error_limit_percent = {limit:g}",
+                f"try a smaller solver.step_safety; {self._kept()}",
+            )
+
+    def _checkpoint(self, wall: float) -> None:
+        extra = {"frames_done": self.frames_done, "wall_s": self.earlier_wall + wall}
+        save_checkpoint(self.out, self.scene, self.scene.state, extra)
+
+    def _stage(self) -> str:
+        path = self.scene.path
+        return path.names[int(path.stage(self.sim.time))]
+
+    def _progress(self, began: float, first_step: int) -> Progress:
+        elapsed = clock.perf_counter() - began
+        done = max(1, self.sim.step - first_step)
+        left = elapsed / done * (self.scene.steps - self.sim.step)
+        energy = self.energy
+        error = 100 * energy.error / max(abs(energy.total_work), WORK_WORTH_MENTIONING)
+        return Progress(
+            self._stage(), self.sim.step, self.scene.steps, self.sim.time, self.scene.model.dt, error,
+            100 * energy.kinetic_share(), elapsed, left,
+        )  # fmt: skip
+
+    def close(self) -> None:
+        """End the solver's threads."""
+        self.sim.close()
+
+
+def _frame_times(scene: Scene) -> list[float]:
+    """Process times of the frames: the start, then `frames_per_stage` evenly in each stage."""
+    count = scene.case.output.frames_per_stage
+    edges = scene.path.time
+    times = [0.0]
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
+        times += [float(a + (b - a) * (k + 1) / count) for k in range(count)]
+    times[-1] = (scene.steps - 0.5) * scene.model.dt
+    return times
