@@ -17,7 +17,7 @@ class Stage(Section):
     """One stage: the values reached at its end; a value left out stays as it was."""
 
     name: Name = Field(description="Unique name, used in file names.")
-    duration_s: float = Field(gt=0, le=3600, description="Duration in process time [s].")
+    duration_s: float = Field(ge=1e-9, le=3600, description="Duration in process time [s].")
     cavity_pressure_kPa: Pressure | None = Field(
         default=None, description="Absolute pressure between the diaphragms at the end [kPa]; left out: held."
     )

@@ -4,6 +4,13 @@ import pytest
 from fault_files import HEAD, POINTS, STEP, add, check_fault, points, swap
 
 FAULTS = {
+    "stage below the time's rounding": (
+        swap("duration_s = 0.1", "duration_s = 5e-324"),
+        "process.stages.0.duration_s",
+        9,
+        "out of range",
+        "",
+    ),
     "pressure": (add("box_pressure_kPa = 1001\n"), "process.stages.0.box_pressure_kPa", 11, "out of range", ""),
     "literal": (add('ramp = "smoth"\n'), "process.stages.0.ramp", 11, "not one of", "smooth"),
     "same stage name": (
