@@ -45,6 +45,9 @@ from ddf.scene import Scene, SheetInfo
 FloatArray = NDArray[np.float64]
 
 BLOCKS_A_SHEET = 12
+LEAST_NODE = 0.25
+"""Least share of a cell whose mass a node of a ply carries. A cut leaves slivers, and a sheet that lies on one
+pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
 COVER_MARGIN_MM = 30.0  # nodes nearer than this to the edge of a ply between two sheets are followed
 TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
@@ -326,7 +329,10 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
             span = np.tile([0, m], (n, 1))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
-        mass = masses[k] * values["area"]
+        area = values["area"]
+        if s["kind"] != DIAPHRAGM:
+            area = np.where(area > 0.0, np.maximum(area, LEAST_NODE * s["a1"] * s["a2"]), 0.0)
+        mass = masses[k] * area
         values["mass"] = np.where(held, 0.0, mass)
         values["inverse_mass"] = np.where(held | (mass <= 0), 0.0, 1.0 / np.where(mass > 0, mass, 1.0))
         for name in names:
@@ -487,5 +493,8 @@ def _infos(case: Case, stack: _Stack, model: Model, scales: list[float]) -> tupl
         mass = float(model.mass[a : a + n].sum())
         scale = scales[k - 1] if s["kind"] != DIAPHRAGM else case.solver.diaphragm_mass_scaling
         kind = "diaphragm" if s["kind"] == DIAPHRAGM else "ply"
-        infos.append(SheetInfo(name, kind, stack.thickness[k], scale, mass / scale, mass - mass / scale, mesh))
+        true = mass / scale
+        if isinstance(mesh, PlyMesh):
+            true = stack.materials[k - 1].areal_density_gsm * TONNE_PER_GSM_MM2 * float(model.area[a : a + n].sum())
+        infos.append(SheetInfo(name, kind, stack.thickness[k], scale, true, mass - true, mesh))
     return tuple(infos)

@@ -11,14 +11,12 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCellLocator
 
-from ddf.model import sheet_scalars, sheet_vectors
 
-
-def crossings(a, exists_a, b=None, exists_b=None):
-    """Places (k, 3) where edges of sheet a (3, n, m) pass through triangles of b, or of a itself; cells (n-1, m-1)."""
-    own = b is None
-    points, faces = a.reshape(3, -1).T, _triangles(exists_a)
-    other, other_faces = (points, faces) if own else (b.reshape(3, -1).T, _triangles(exists_b))
+def crossings(points, quads, other=None, other_quads=None):
+    """Places (k, 3) where edges of a sheet pass through triangles of another or itself; points (n, 3), quads (q, 4)."""
+    own = other is None
+    faces = _triangles(quads)
+    other, other_faces = (points, faces) if own else (other, _triangles(other_quads))
     locator, keep = _locator(other, other_faces)
     hits, found = vtkIdList(), []
     for p, q in _edges(faces):
@@ -35,26 +33,22 @@ def crossings(a, exists_a, b=None, exists_b=None):
     return np.array(found).reshape(-1, 3)
 
 
-def crossings_of_scene(scene):
-    """Number of crossings of each pair of sheets, and of each sheet with itself, by the sheets' names."""
-    model, count = scene.model, {}
-    sheets = [
-        (info.name, sheet_vectors(model, scene.state.x, k), sheet_scalars(model, model.cell, k)[:-1, :-1] > 0.0)
-        for k, info in enumerate(scene.sheets)
-    ]
-    for k, (name, x, exists) in enumerate(sheets):
-        count[name, name] = len(crossings(x, exists))
-        for other, y, there in sheets[k + 1 :]:
-            count[name, other] = len(crossings(x, exists, y, there)) + len(crossings(y, there, x, exists))
-    return count
+def crossings_of_frame(run, sheets, index=-1):
+    """Crossings of each pair of sheets and of each sheet with itself in a frame of a finished run: {(a, b): places}."""
+    frames = {name: run.read_frame(name, index) for name in sheets}
+    found = {}
+    for k, a in enumerate(sheets):
+        found[a, a] = crossings(frames[a]["points"], frames[a]["cells"])
+        for b in sheets[k + 1 :]:
+            one = (frames[a]["points"], frames[a]["cells"])
+            two = (frames[b]["points"], frames[b]["cells"])
+            found[a, b] = np.concatenate([crossings(*one, *two), crossings(*two, *one)])
+    return found
 
 
-def _triangles(exists):
-    """Node triples (k, 3) of a grid's cells (n-1, m-1) that exist."""
-    n, m = exists.shape[0] + 1, exists.shape[1] + 1
-    number = np.arange(n * m).reshape(n, m)
-    a, b, c, d = (number[i : n - 1 + i, j : m - 1 + j][exists] for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)))
-    return np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+def _triangles(quads):
+    """Node triples (2 q, 3) of quadrilaterals (q, 4), split along one diagonal."""
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 def _locator(points, faces):

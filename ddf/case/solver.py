@@ -39,7 +39,7 @@ class Solver(Section):
         default=3.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=30.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
+        default=100.0, gt=0, le=1e4, description="Penalty on the tool [N/mm3]: pressure per penetration."
     )
     in_plane_pressure: bool = Field(
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."

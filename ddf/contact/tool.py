@@ -62,7 +62,7 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     if near >= 0.0:
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
-            out[2] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
+            out[3] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
             out[3] -= 0.5 * k * before * (dt * rate - before)
         anchor[0] = FREE
         return False
@@ -92,7 +92,7 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
         anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
     out[1] += 0.5 * k * (keep * stretch) ** 2
     before = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
-    out[2] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
+    out[2 if pushed else 3] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
     along = inertia * TANGENTIAL * share
     across = (inertia if pushed else 0.0) - along

@@ -91,8 +91,8 @@ def _give(f, v, left, right, sign):
 def squeeze_forces(x, v, f, cell, press, thickness, low, high, work):
     """Add the in-plane forces of contact pressure to rows low..high-1 of f; returns their power [N mm/s].
 
-    x, v, f (3, n, m); cell (n, m) reference areas [mm2]; press (n, m) mean contact force on each node [N]; thickness at the
-    reference area [mm]; work (13, m).
+    x, v, f (3, n, m); cell (n, m) reference areas [mm2]; press (n, m) mean contact force on each node [N];
+    thickness at the reference area [mm]; work (13, m).
     """
     n, m = x.shape[1], x.shape[2]
     c = m - 1

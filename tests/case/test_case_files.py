@@ -51,7 +51,7 @@ def test_published_case():
     assert case.plies[0].name == "ply-1"
     assert case.process.duration_s == pytest.approx(0.25)
     assert case.process.largest_lift_mm == 82
-    assert case.solver.mass_scaling == 8
+    assert case.solver.mass_scaling == 24
     assert resolve_gap_mm(case) == pytest.approx(0.7)
     # An 82 mm cube corner has a base edge of 200.9 mm.
     assert case.tool.footprint_radius_mm() * 3**0.5 == pytest.approx(200.86, abs=0.01)

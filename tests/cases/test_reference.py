@@ -8,8 +8,10 @@ import json
 from pathlib import Path
 
 import pytest
+from crossings import crossings_of_frame
 
 from ddf.case import load_case
+from ddf.output.results import open_run
 from ddf.run import run_case
 
 REFERENCE = Path(__file__).with_name("tetrahedron-0-90-coarse.json")
@@ -54,3 +56,9 @@ def test_wrinkles(formed, reference):
     assert ply["wrinkle_count"] >= 4
     assert ply["wrinkle_total_length_mm"] == pytest.approx(reference["wrinkle_total_length_mm"], rel=0.35)
     assert ply["wrinkle_largest_amplitude_mm"] == pytest.approx(reference["wrinkle_largest_amplitude_mm"], rel=0.35)
+
+
+def test_no_sheet_crosses_itself(formed):
+    run = open_run(formed.folder)
+    for sheet in ("bottom-diaphragm", "ply-1", "top-diaphragm"):
+        assert len(crossings_of_frame(run, [sheet])[sheet, sheet]) == 0
