@@ -8,7 +8,8 @@ With t = u - i in [-1/2, 1/2] the weights of nodes i-1, i, i+1 are  1/2 (1/2 - t
 1/2 (1/2 + t)^2. They sum to 1 and reproduce linear functions. The surface lies h^2 k / 8 inside a curve k
 of the nodes. Near an edge the last whole patch of 3 x 3 nodes is extended.
 
-Nodes and forces on them lie as (x, y, z, 0), so that one packed instruction serves all components (`quad.py`).
+Nodes lie as (x, y, z, cover), forces on them as (x, y, z, normal force), so that one packed instruction serves all
+components (`quad.py`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Four doubles in one register: the little explicit SIMD that contact needs (numba has none).
 
-A node of a master sheet is stored as (x, y, z, 0): one load, and each weight multiplies all components.
+A node of a master sheet is stored as (x, y, z, cover): one load, and each weight multiplies all components.
 With fastmath `scaled` and `add_scaled` become one packed instruction each.
 """
 

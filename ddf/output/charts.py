@@ -44,7 +44,7 @@ def draw_energies(history: Columns) -> Any:
 def _energy_lines(history: Columns) -> dict[str, NDArray[Any]]:
     """Curves by label [mJ]: strain by kind over all sheets, kinetic, contact, dissipated, work."""
     lines: dict[str, NDArray[Any]] = {
-        "work of pressure and tool": history["work_pressure_mJ"] + history["work_tool_mJ"]
+        "work of pressures and tool": np.sum([v for key, v in history.items() if key.startswith("work_")], axis=0)
     }
     kinds = {
         "membrane": "diaphragms, stretching", "shear": "plies, shear", "bending": "bending",
