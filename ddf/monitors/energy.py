@@ -1,7 +1,7 @@
 """Energies of a scene by kind and sheet, and their balance.
 
-kinetic + strain + contact springs + dissipated = work of pressures, tool and thinning layers (`elements.squeeze`), up to
-the error of the steps.
+kinetic + strain + contact springs + dissipated = work of pressures, tool and thinning layers (`elements.squeeze`),
+up to the error of the steps.
 Kinetic energy is taken in mid-step: velocities are advanced by half a kick with the last forces. What the
 implicit steps of fibre tension dissipate (`fibre_waves`) is the work done on the tension less the strain energy
 that the fibres hold; plies start unstretched. Of shell-membrane plies it is the work of their stresses less what
