@@ -130,7 +130,7 @@ def rebuild_report(path: Path) -> Path:
     out = RunFolder(path)
     load_checkpoint(out, scene)
     time = float(scene.state.clock[1])
-    if time < scene.path.duration - scene.model.dt:
+    if run.info["stop_reason"] != "finished":
         raise DdfError(f"{path} holds an unfinished run, at {time:.5f} s", "finish it with ddf run --resume")
     notes: list[str] = []
     finish_folder(scene, out, energies(scene.model, scene.state), time, notes)

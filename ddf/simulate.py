@@ -8,7 +8,7 @@ from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.tool import PRESS
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
 from ddf.dynamics.team import Team
-from ddf.elements import bending, shear
+from ddf.elements import bending, shear, squeeze
 from ddf.elements.rubber import cone_volume
 from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.tension import LINES
@@ -33,7 +33,7 @@ def make_work(model: Model, members: int) -> Work:
         for family, key in enumerate(("cols", "rows")):
             count = int(model.sheets[k][key])
             bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
-    tiled = (bending, shear, membrane, shell)
+    tiled = (bending, shear, squeeze, membrane, shell)
     longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom = model.sheets[0]
     return Work(

@@ -68,6 +68,11 @@ class Process(Section):
         default=None, description="Stages in order. Either this or breakpoints."
     )
     breakpoints: Breakpoints | None = Field(default=None, description="Histories in lists. Either this or stages.")
+    settled_percent: float = Field(
+        default=0.01, ge=0, le=1,
+        description="A last stage in which no load changes ends once kinetic energy is less than this share of the "
+        "internal [%]; 0: never early.",
+    )  # fmt: skip
 
     @property
     def duration_s(self) -> float:

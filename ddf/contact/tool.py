@@ -48,7 +48,7 @@ def _held(p, v, dt, anchor, nx, ny, nz):
     return x * ox + y * oy + z * oz - (x * nx + y * ny + z * nz) * (ox * nx + oy * ny + oz * nz)
 
 
-@njit(**FAST)
+@njit(inline="always")
 def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     """What one contact point does, into give (PRESS,); returns whether it touches.
 
@@ -108,7 +108,7 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     return True
 
 
-@njit(**FAST)
+@njit(inline="always")
 def _put(row, weight, give):
     """Add a point's share to a node's row of press (PRESS,)."""
     for c in range(PRESS):

@@ -41,7 +41,7 @@ from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.shell_membrane.history import HISTORY
 from ddf.elements.shell_membrane.rotations import turn_row
 from ddf.elements.squeeze import SHARE, squeeze_forces
-from ddf.elements.tension import FAST, KEEP, LINES, pull_kept, pull_lines, pull_rows
+from ddf.elements.tension import FAST, LINES, pull_kept, pull_lines, pull_rows
 from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
     CONTACT_DAMPING,
@@ -130,7 +130,7 @@ def _internal(model, state, work, row, b, scratch):
     if sheet.squeeze > 0.0:
         power = squeeze_forces(
             x, vectors(state.v, sheet), f, scalars(model.cell, sheet), scalars(state.press, sheet), sheet.squeeze,
-            low, high, w,
+            low, high, scratch,
         )  # fmt: skip
         state.ledger[b, SQUEEZE_WORK] += model.dt * power
     if sheet.kind == PLY:
@@ -391,7 +391,7 @@ def _kick(model, state, b, damping, scratch):
         kept1, kept2 = scalars(state.tension1, sheet), scalars(state.tension2, sheet)
         q = scratch[: 3 * sheet.cols].reshape((3, sheet.cols))
         for i in range(block.low, block.high):
-            pull_kept(x, v, inverse, kept1, kept2, KEEP * dt, i, q)
+            pull_kept(x, v, inverse, kept1, kept2, dt, i, q)
 
 
 @njit(**FAST)
@@ -420,18 +420,17 @@ def _pull(model, state, work, member, family, sweep, k, low, high):
     x, v = vectors(state.x, sheet), vectors(state.v, sheet)
     inverse = scalars(model.inverse_mass, sheet)
     dt = model.dt
-    keep = KEEP if sweep == 0 else 1.0
     rows = 6 * ((sheet.rows if family == 1 else sheet.cols) + 1) + 2
     lines = work.lines[member, : rows * LINES].reshape((rows, LINES))
     if family == 1:
         law = (1.0 / sheet.a1, dt * dt * sheet.eh1 / sheet.a1, 0.5 * dt * sheet.eh1, dt * dt / sheet.a1, dt)
         bar, kept = scalars(model.bar1, sheet), scalars(state.tension1, sheet)
-        pull_lines(x, v, inverse, bar, kept, law, keep, sweep == 1, low, high, lines)
+        pull_lines(x, v, inverse, bar, kept, law, sweep == 1, low, high, lines)
     else:
         law = (1.0 / sheet.a2, dt * dt * sheet.eh2 / sheet.a2, 0.5 * dt * sheet.eh2, dt * dt / sheet.a2, dt)
         bar, kept = scalars(model.bar2, sheet), scalars(state.tension2, sheet)
         turned = work.turned[member, : 9 * sheet.cols * LINES].reshape((9, sheet.cols, LINES))
-        pull_rows(x, v, inverse, bar, kept, law, keep, sweep == 1, low, high, turned, lines)
+        pull_rows(x, v, inverse, bar, kept, law, sweep == 1, low, high, turned, lines)
 
 
 @njit(**FAST)

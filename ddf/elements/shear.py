@@ -12,24 +12,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
 from ddf.elements.tension import FAST
 
-TILE = 128
-"""Cells of a row that go through the passes together: their scratch stays in the first cache."""
-
-# scratch of a tile: fields of `w`; fields of `g`, whose entry t + 1 is cell t between two empty cells
-WIDTH = TILE + 2
+# fields of `w`, the scratch of a tile
 R1, R2, S, INTERVAL, PART, SLOPE = (np.uint64(k * TILE) for k in range(6))
-PLUS, MINUS = np.uint64(0), np.uint64(3 * WIDTH)
-ONE, NEXT = np.uint64(1), np.uint64(WIDTH)
-SCRATCH = 6 * TILE + 6 * WIDTH
-
-
-@njit(**FAST)
-def _tangents(x, c, i, j):
-    """Means of opposite edges of a cell, one component."""
-    p, q = x[c, i + ONE, j + ONE] - x[c, i, j], x[c, i + ONE, j] - x[c, i, j + ONE]
-    return 0.5 * (p + q), 0.5 * (p - q)
+SCRATCH = 6 * TILE + SHARES
 
 
 @njit(**FAST)
@@ -39,9 +27,9 @@ def _sines(x, i, start, count, step, last, w):
     step: intervals a unit of the sine; last: the last interval, whose cubic goes on.
     """
     for t in range(count):
-        ax, bx = _tangents(x, 0, i, start + t)
-        ay, by = _tangents(x, 1, i, start + t)
-        az, bz = _tangents(x, 2, i, start + t)
+        ax, bx = tangents(x, 0, i, start + t)
+        ay, by = tangents(x, 1, i, start + t)
+        az, bz = tangents(x, 2, i, start + t)
         a = 1.0 / np.sqrt(ax * ax + ay * ay + az * az)
         b = 1.0 / np.sqrt(bx * bx + by * by + bz * bz)
         s = (ax * bx + ay * by + az * bz) * a * b
@@ -70,30 +58,18 @@ def _pull(x, cell, i, start, count, w, g):
         r1, r2, s, slope = w[R1 + t], w[R2 + t], w[S + t], -0.5 * w[SLOPE + t] * cell[i, start + t]
         slope = slope if s >= 0.0 else -slope
         a11, a22, a12 = slope * s * r1 * r1, slope * s * r2 * r2, slope * r1 * r2
-        a, b = _tangents(x, 0, i, start + t)
+        a, b = tangents(x, 0, i, start + t)
         g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
         o = t + ONE
         g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
-        a, b = _tangents(x, 1, i, start + t)
+        a, b = tangents(x, 1, i, start + t)
         g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
         o += NEXT
         g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
-        a, b = _tangents(x, 2, i, start + t)
+        a, b = tangents(x, 2, i, start + t)
         g1, g2 = a12 * b - a11 * a, a12 * a - a22 * b
         o += NEXT
         g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
-
-
-@njit(**FAST)
-def _add(f, i, start, count, g, sign, right, left):
-    """Add a tile's forces to a row of nodes: `right` from the cell to its right, `left` from that to its left."""
-    for c in range(3):
-        o = np.uint64(c) * NEXT
-        p, q = right + o + ONE, left + o
-        g[q] = 0.0
-        g[p + count] = 0.0
-        for t in range(count + ONE):
-            f[c, i, start + t] += sign * (g[p + t] + g[q + t])
 
 
 @njit(**FAST)
@@ -114,10 +90,7 @@ def shear_forces(x, f, cell, table, low, high, work):
             _sines(x, row, start, count, step, np.float64(last), w)
             _slopes(table, last, count, w)
             _pull(x, cell, row, start, count, w, g)
-            if i >= low:
-                _add(f, row, start, count, g, -1.0, PLUS, MINUS)
-            if i + 1 < high:
-                _add(f, row + ONE, start, count, g, 1.0, MINUS, PLUS)
+            add_shares(f, row, start, count, g, low, high)
 
 
 def shear_sine(x: np.ndarray) -> np.ndarray:

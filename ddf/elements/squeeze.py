@@ -13,7 +13,8 @@ on either side. Nothing is added for the gas on the outer faces: it is applied t
 cancels against -p t/2. With P the sum of the contact forces on a cell (a quarter of each node's)
 the corners get
 
-    f = P t0 A0 / (2 A^2) dA/dx,   dA = n . (dd1 x d2 + d1 x dd2) / 2,   d1, d2 the cell's diagonals
+    f = P t0 A0 / (2 A^2) dA/dx,   A = |t1 x t2|,   t1, t2 the cell's mean tangents,   with g_ab = t_a . t_b
+    dA/dt1 = (g22 t1 - g12 t2)/A,   dA/dt2 = (g11 t2 - g12 t1)/A
 
 (forces and moments balance). The power of these forces is what pressure would do on layers that
 thin; mid-surfaces keep their distance in the model, so it is booked as work of its own.
@@ -27,6 +28,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
 from ddf.elements.tension import FAST
 
 SHARE = 0.02
@@ -36,80 +38,83 @@ LEAST_AREA = 0.25
 """Share of its first area below which a cell counts as no smaller: it is collapsing, which guards tell."""
 
 
+# fields of `w`, the scratch of a tile: half of P t0 A0 / (2 A^3) times g11, g22, g12
+Q11, Q22, Q12 = (np.uint64(k * TILE) for k in range(3))
+SCRATCH = 3 * TILE + SHARES
+
+
 @njit(**FAST)
-def _pressed(p, q):
-    """Whether anything presses on two rows of nodes."""
+def _pressed(press, i, start, count):
+    """Whether anything presses on the nodes of a tile."""
     top = 0.0
-    for j in range(p.shape[0]):
-        top = max(top, p[j], q[j])
+    for t in range(count + ONE):
+        top = max(top, press[i, start + t], press[i + ONE, start + t])
     return top > 0.0
 
 
 @njit(**FAST)
-def _diagonals(xa, xb, p, q):
-    """Diagonals of a row of cells, one component; xa row i, xb row i+1."""
-    for j in range(p.shape[0]):
-        p[j] = xb[j + 1] - xa[j]
-        q[j] = xa[j + 1] - xb[j]
-
-
-@njit(**FAST)
-def _scales(p, q, cell, press0, press1, half, normal, k):
-    """Area vectors d1 x d2 of a row of cells, and the factors that make forces of them."""
-    for j in range(k.shape[0]):
-        a = p[1, j] * q[2, j] - p[2, j] * q[1, j]
-        b = p[2, j] * q[0, j] - p[0, j] * q[2, j]
-        c = p[0, j] * q[1, j] - p[1, j] * q[0, j]
-        normal[0, j], normal[1, j], normal[2, j] = a, b, c
-        area = max(0.5 * np.sqrt(a * a + b * b + c * c), LEAST_AREA * cell[j]) + 1e-30
-        force = 0.25 * (press0[j] + press0[j + 1] + press1[j] + press1[j + 1])
-        k[j] = 0.25 * force * half * cell[j] / (area * area * area)
-
-
-@njit(**FAST)
-def _corners(py, pz, qy, qz, ny, nz, k, u, w):
-    """Forces along the first and the second diagonal, one component; y, z: the next two components."""
-    for j in range(k.shape[0]):
-        u[j] = k[j] * (qy[j] * nz[j] - qz[j] * ny[j])
-        w[j] = k[j] * (ny[j] * pz[j] - nz[j] * py[j])
-
-
-@njit(**FAST)
-def _give(f, v, left, right, sign):
-    """Add sign left[j] to node j of a row and -sign right[j] to node j+1, one component; returns their power."""
+def _factors(x, v, cell, press, half, i, start, count, w):
+    """Set Q11, Q22, Q12 of a tile of cells; returns the power of their forces."""
     power = 0.0
-    for j in range(left.shape[0]):
-        f[j] += sign * left[j]
-        power += sign * left[j] * v[j]
-    for j in range(right.shape[0]):
-        f[j + 1] -= sign * right[j]
-        power -= sign * right[j] * v[j + 1]
+    for t in range(count):
+        j = start + t
+        ax, bx = tangents(x, 0, i, j)
+        ay, by = tangents(x, 1, i, j)
+        az, bz = tangents(x, 2, i, j)
+        g11, g22, g12 = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
+        area = max(np.sqrt(abs(g11 * g22 - g12 * g12)), LEAST_AREA * cell[i, j]) + 1e-30
+        force = 0.25 * (press[i, j] + press[i, j + ONE] + press[i + ONE, j] + press[i + ONE, j + ONE])
+        q = 0.5 * force * half * cell[i, j] / (area * area * area)
+        w[Q11 + t], w[Q22 + t], w[Q12 + t] = q * g11, q * g22, q * g12
+        rx, sx = tangents(v, 0, i, j)
+        ry, sy = tangents(v, 1, i, j)
+        rz, sz = tangents(v, 2, i, j)
+        along = g22 * (ax * rx + ay * ry + az * rz) + g11 * (bx * sx + by * sy + bz * sz)
+        across = (ax * sx + ay * sy + az * sz) + (bx * rx + by * ry + bz * rz)
+        power += 2.0 * q * (along - g12 * across)
     return power
 
 
 @njit(**FAST)
+def _push(x, i, start, count, w, g):
+    """Shares of the corners, all components."""
+    for t in range(count):
+        j = start + t
+        q11, q22, q12 = w[Q11 + t], w[Q22 + t], w[Q12 + t]
+        o = t + ONE
+        a, b = tangents(x, 0, i, j)
+        g1, g2 = q22 * a - q12 * b, q11 * b - q12 * a
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+        o += NEXT
+        a, b = tangents(x, 1, i, j)
+        g1, g2 = q22 * a - q12 * b, q11 * b - q12 * a
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+        o += NEXT
+        a, b = tangents(x, 2, i, j)
+        g1, g2 = q22 * a - q12 * b, q11 * b - q12 * a
+        g[PLUS + o], g[MINUS + o] = g1 + g2, g1 - g2
+
+
+@njit(**FAST)
 def squeeze_forces(x, v, f, cell, press, thickness, low, high, work):
-    """Add the in-plane forces of contact pressure to rows low..high-1 of f; returns their power [N mm/s].
+    """Add the in-plane forces of contact pressure to rows low..high-1 of f.
 
     x, v, f (3, n, m); cell (n, m) reference areas [mm2]; press (n, m) mean contact force on each node [N];
-    thickness at the reference area [mm]; work (13, m).
+    thickness at the reference area [mm]; work: at least SCRATCH numbers, flat. Returns the power of the forces of the
+    cells in rows low..high-1, on their nodes in all rows [N mm/s].
     """
     n, m = x.shape[1], x.shape[2]
-    c = m - 1
-    p, q, normal, k = work[0:3, :c], work[3:6, :c], work[6:9, :c], work[9, :c]
-    u, w = work[10, :c], work[11, :c]
+    w, g = work[: 3 * TILE], work[3 * TILE : SCRATCH]
     power = 0.0
     for i in range(max(low - 1, 0), min(high, n - 1)):
-        if not _pressed(press[i], press[i + 1]):
-            continue
-        for a in range(3):
-            _diagonals(x[a, i], x[a, i + 1], p[a], q[a])
-        _scales(p, q, cell[i], press[i], press[i + 1], 0.5 * thickness, normal, k)
-        for a in range(3):
-            y, z = (a + 1) % 3, (a + 2) % 3
-            _corners(p[y], p[z], q[y], q[z], normal[y], normal[z], k, u, w)
+        row = np.uint64(i)
+        for first in range(0, m - 1, TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, m - 1 - first))
+            if not _pressed(press, row, start, count):
+                continue
+            done = _factors(x, v, cell, press, 0.5 * thickness, row, start, count, w)
             if i >= low:
-                power += _give(f[a, i], v[a, i], u, w, -1.0)
-            if i + 1 < high:
-                power += _give(f[a, i + 1], v[a, i + 1], w, u, -1.0)
+                power += done
+            _push(x, row, start, count, w, g)
+            add_shares(f, row, start, count, g, low, high)
     return power

@@ -51,6 +51,12 @@ class LoadPath:
         """Process time [s]."""
         return float(self.time[-1])
 
+    @property
+    def constant_from(self) -> float:
+        """Time from which no load changes any more [s]: the start of a last stage that holds, else the end."""
+        held = all(values[-1] == values[-2] for values in (self.cavity, self.box, self.lift))
+        return float(self.time[-2 if held else -1])
+
     def stage(self, time: ArrayLike) -> NDArray[np.int64]:
         """Number of the stage at a time."""
         k = np.searchsorted(self.time, np.asarray(time, dtype=float), side="right") - 1

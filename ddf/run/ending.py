@@ -38,7 +38,7 @@ def write_info(runner: Runner, reason: str, message: str, checks: list[Check] | 
         "stop_reason": reason,
         "message": message,
         "step": sim.step,
-        "steps": scene.steps,
+        "steps": runner.steps,
         "process_time_s": sim.time,
         "step_s": scene.model.dt,
         "step_limit_s": scene.step_limit,

@@ -50,6 +50,7 @@ class Runner:
         self.frames = FrameWriter(out, scene) if scene.case.output.vtu else None
         self.frame_times = _frame_times(scene)
         self.frames_done = 0
+        self.steps = scene.steps
         self.energy: Energies = energies(scene.model, scene.state)
         self.earlier_wall = 0.0
         self.history: HistoryWriter | None = None
@@ -63,12 +64,13 @@ class Runner:
         self.sim.recount()
         self.energy = energies(self.scene.model, self.scene.state)
         self.history = HistoryWriter(self.out, self.names, self.sim.step)
+        self._end_if_settled()
         if self.frames is not None:
             self.frames.prune(self.sim.time)
 
     def loop(self, interrupt: Interrupt) -> str:
         """Advance to the end of the process; returns the reason for stopping."""
-        steps, interval = self.scene.steps, self.scene.case.solver.check_interval_steps
+        interval = self.scene.case.solver.check_interval_steps
         began = last_report = clock.perf_counter()
         first_step = self.sim.step
         if self.history is None:
@@ -79,25 +81,25 @@ class Runner:
         if self.sim.step == 0:
             self._checkpoint(0.0)
         began = last_checkpoint = clock.perf_counter()
-        while self.sim.step < steps:
+        while self.sim.step < self.steps:
             with self.watch("steps"):
-                self.sim.advance(min(interval - self.sim.step % interval, steps - self.sim.step))
+                self.sim.advance(min(interval - self.sim.step % interval, self.steps - self.sim.step))
             self._guard()
             with self.watch("output"):
                 self._observe(began)
             now = clock.perf_counter()
-            if now - last_report > REPORT_EVERY_S or self.sim.step == steps:
+            if now - last_report > REPORT_EVERY_S or self.sim.step == self.steps:
                 last_report = now
                 progress = self._progress(began, first_step)
                 self.log.info("%s", progress)
                 if self.report is not None:
                     self.report(progress)
             due = now - last_checkpoint > self.scene.case.output.checkpoint_interval_s
-            if interrupt.caught or due or self.sim.step == steps:
+            if interrupt.caught or due or self.sim.step == self.steps:
                 with self.watch("output"):
                     self._checkpoint(now - began)
                 last_checkpoint = now
-            if interrupt.caught and self.sim.step < steps:
+            if interrupt.caught and self.sim.step < self.steps:
                 return "interrupted"
         return "finished"
 
@@ -117,10 +119,8 @@ class Runner:
 
     def _observe(self, began: float) -> None:
         """History, energy guard and frames that are due."""
-        sim, output, scene = self.sim, self.scene.case.output, self.scene
-        last = sim.step == scene.steps
-        interval = scene.case.solver.check_interval_steps
-        if sim.step % max(output.history_interval_steps, interval) < interval or last:
+        sim, scene = self.sim, self.scene
+        if self._is_history_step():
             self.energy = energies(scene.model, scene.state)
             wall = self.earlier_wall + clock.perf_counter() - began
             assert self.history is not None
@@ -128,10 +128,27 @@ class Runner:
                 sim.step, sim.time, self._stage(), scene.path.at(sim.time), self.energy, scene.model.dt, wall
             )
             self._guard_energy()
+            self._end_if_settled()
+        if sim.step == self.steps:  # the frames that an early end leaves out are one
+            self.frame_times[self.frames_done :] = [sim.time][: len(self.frame_times) - self.frames_done]
         while self.frames_done < len(self.frame_times) and sim.time >= self.frame_times[self.frames_done] - 1e-12:
             if self.frames is not None:
                 self.frames.write(take_snapshot(scene, scene.state))
             self.frames_done += 1
+
+    def _is_history_step(self) -> bool:
+        """Whether energies are looked at now."""
+        interval = self.scene.case.solver.check_interval_steps
+        every = max(self.scene.case.output.history_interval_steps, interval)
+        return self.sim.step % every < interval or self.sim.step == self.scene.steps
+
+    def _end_if_settled(self) -> None:
+        """End here if loads are constant to the end and kinetic energy is below the case's `settled_percent`."""
+        limit, begin = self.scene.case.process.settled_percent, self.scene.path.constant_from
+        held = begin < self.sim.time and self._is_history_step()
+        if held and limit > 0.0 and 100.0 * self.energy.kinetic_share() < limit and self.sim.step < self.steps:
+            self.log.info("settled at %.6g s: the last stage ends here", self.sim.time)
+            self.steps = self.sim.step
 
     def _guard_energy(self) -> None:
         energy, limit = self.energy, self.scene.case.solver.energy_error_limit_percent
@@ -154,11 +171,11 @@ class Runner:
     def _progress(self, began: float, first_step: int) -> Progress:
         elapsed = clock.perf_counter() - began
         done = max(1, self.sim.step - first_step)
-        left = elapsed / done * (self.scene.steps - self.sim.step)
+        left = elapsed / done * (self.steps - self.sim.step)
         energy = self.energy
         error = 100 * energy.error / max(abs(energy.total_work), WORK_WORTH_MENTIONING)
         return Progress(
-            self._stage(), self.sim.step, self.scene.steps, self.sim.time, self.scene.model.dt, error,
+            self._stage(), self.sim.step, self.steps, self.sim.time, self.scene.model.dt, error,
             100 * energy.kinetic_share(), elapsed, left,
         )  # fmt: skip
 

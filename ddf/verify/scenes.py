@@ -195,8 +195,7 @@ def lead(sim: Simulation, mask: NDArray[np.bool_], target: FloatArray, steps: in
 def settle(sim: Simulation, speed_mm_s: float, longest_s: float, steps: int = 200) -> float:
     """Advance until nothing in the ply goes anywhere faster than a speed; returns the time it took [s].
 
-    The speed is that between two looks an even number of steps apart: the families are corrected in turn, and a
-    sheared ply at rest goes to and fro by what is left of its tension, (1 - KEEP) sin^4 of the shear angle of it (see
+    The speed is that between two looks an even number of steps apart, for the families are corrected in turn (see
     `elements.tension`). Raises UnstableError where it has not come to rest after `longest_s`, or is no number any more.
     """
     start, x = sim.time, positions(sim.scene)

@@ -27,6 +27,7 @@ SMALL = [
     "process.stages.1.duration_s=0.012",
     "process.stages.2.duration_s=0.004",
     "process.stages.3.duration_s=0.002",
+    "process.settled_percent=0",
     "output.frames_per_stage=2",
     "solver.energy_error_limit_percent=100",
 ]
@@ -171,3 +172,26 @@ def test_commands_and_exit_codes(tmp_path):
     assert "thickness_mm" in bad.output
     assert "unknown" in bad.output
     assert runner.invoke(main, ["run", str(tmp_path / "missing.toml")]).exit_code == 2
+
+
+def test_a_last_stage_that_holds_ends_when_settled(case, tmp_path):
+    """A flat stack that lies still: one frame at the end in place of those left out; resumed, it is at its end."""
+    stages = case.process.stages
+    held = stages[0].model_copy(update={"name": "hold", "duration_s": 0.05, "cavity_pressure_kPa": 0.0,
+                                        "mass_damping_1_s": 300.0})  # fmt: skip
+    process = case.process.model_copy(update={"stages": (stages[0], held), "settled_percent": 1.0})
+    flat = case.model_copy(update={"process": process})
+    result = run_case(flat, tmp_path / "run", threads=1)
+    run = open_run(result.folder)
+    assert result.stop_reason == run.info["stop_reason"] == "finished"
+    assert 0.004 < result.time_s < 0.045
+    assert run.info["step"] == run.info["steps"] == result.step
+    history = run.history()
+    assert history["kinetic_over_internal_percent"][-1] < 1.0 <= history["kinetic_over_internal_percent"][-2]
+    times = [time for time, _ in run.frames("ply-1")]
+    assert times[-1] == pytest.approx(result.time_s, rel=1e-6)
+    assert len(set(times)) == len(times)
+    again = run_case(flat, tmp_path / "run", threads=1, resume=True)
+    assert (again.stop_reason, again.step) == ("finished", result.step)
+    whole = flat.model_copy(update={"process": process.model_copy(update={"settled_percent": 0.0})})
+    assert run_case(whole, tmp_path / "whole", threads=1).time_s == pytest.approx(0.054, rel=0.01)

@@ -11,7 +11,7 @@ from ddf.elements.bending import bending_energy, bending_forces
 from ddf.elements.plate import plate_energy, plate_forces
 from ddf.elements.rubber import cone_volume, rubber_energy, rubber_forces
 from ddf.elements.shear import shear_energy, shear_forces
-from ddf.elements.tension import KEEP, LINES, pull_kept, pull_lines, pull_rows, tension_energy
+from ddf.elements.tension import LINES, pull_kept, pull_lines, pull_rows, tension_energy
 from ddf.materials.shear_law import shear_samples, shear_table
 from ddf.model import SHEET
 
@@ -112,7 +112,7 @@ def ply_tension_energy(patch, x):
     return sum(tension_energy(x, patch.bar1, patch.bar2, patch.sheet))
 
 
-def pull(patch, x, v, inverse_mass, dt, family, bundle=LINES, kept=None, keep=1.0, string=False):
+def pull(patch, x, v, inverse_mass, dt, family, bundle=LINES, kept=None, string=False):
     """Velocities after the correction of a family's tensions (kept, changed), its lines cut into bundles."""
     s, v = patch.sheet, v.copy()
     n, m = patch.shape
@@ -122,11 +122,11 @@ def pull(patch, x, v, inverse_mass, dt, family, bundle=LINES, kept=None, keep=1.
     if family == 1:
         for a in range(0, m, bundle):
             work = np.full((6 * (n + 1) + 2, LINES), np.nan)
-            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, keep, string, a, min(m, a + bundle), work)
+            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, string, a, min(m, a + bundle), work)
     else:
         for a in range(0, n, bundle):
             work, turned = np.full((6 * (m + 1) + 2, LINES), np.nan), np.full((9, m, LINES), np.nan)
-            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, keep, string, a, min(n, a + bundle), turned, work)
+            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, string, a, min(n, a + bundle), turned, work)
     return v
 
 
@@ -134,11 +134,10 @@ def pull_both(patch, x, v, inverse_mass, dt, kept, first):
     """The whole step of the tensions kept[0], kept[1] (changed), family `first` first: velocities after it."""
     v = v.copy()
     for i in range(patch.shape[0]):
-        pull_kept(x, v, inverse_mass, kept[0], kept[1], KEEP * dt, i, np.zeros((3, patch.shape[1])))
+        pull_kept(x, v, inverse_mass, kept[0], kept[1], dt, i, np.zeros((3, patch.shape[1])))
     for turn in range(4):
         family = first if turn % 2 == 0 else 3 - first
-        keep = KEEP if turn < 2 else 1.0
-        v = pull(patch, x, v, inverse_mass, dt, family, LINES, kept[family - 1], keep, turn > 1)
+        v = pull(patch, x, v, inverse_mass, dt, family, LINES, kept[family - 1], turn > 1)
     return v
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import patches as p
 import pytest
 
-from ddf.elements.tension import KEEP
+from ddf.elements.tension import VISCOUS
 
 
 def _bars(patch, family):
@@ -35,7 +35,7 @@ def _dense_parts(patch, x, family):
 def _dense_step(patch, x, v, inverse_mass, dt, family):
     g, k, tension = _dense_parts(patch, x, family)
     w = np.tile(inverse_mass.ravel(), 3)
-    matrix = np.eye(w.size) + dt * dt * w[:, None] * (g.T @ (k[:, None] * g))
+    matrix = np.eye(w.size) + VISCOUS * dt * dt * w[:, None] * (g.T @ (k[:, None] * g))
     return np.linalg.solve(matrix, v.ravel() - dt * w * (g.T @ tension)).reshape(v.shape)
 
 
@@ -49,7 +49,7 @@ def test_step_solves_its_equations(family, bundle):
     v = rng.normal(size=x.shape) * 100.0
     inverse = 1.0 / rng.uniform(1e-9, 4e-9, patch.shape)
     inverse[2, 3] = inverse[0, 5] = 0.0  # held nodes
-    for dt in (1e-7, 1e-5, 1e-3):  # 1/100 .. 100 times the fibres' own limit
+    for dt in (1e-7, 1e-5, 1e-3 / VISCOUS**0.5):  # 1/100 .. 100 times the fibres' own limit
         expected = _dense_step(patch, x, v, inverse, dt, family)
         got = p.pull(patch, x, v, inverse, dt, family, bundle)
         assert p.relative(got - v, expected - v) < 1e-8
@@ -59,11 +59,11 @@ def test_step_solves_its_equations(family, bundle):
         start, _, width = _bars(patch, family)
         kept = np.zeros(patch.rest[0].size)
         kept[start] = rng.normal(size=start.size) * (width > 0.0)
-        before = v - 0.7 * dt * np.tile(inverse.ravel(), 3).reshape(v.shape) * (g.T @ kept[start]).reshape(v.shape)
+        before = v - dt * np.tile(inverse.ravel(), 3).reshape(v.shape) * (g.T @ kept[start]).reshape(v.shape)
         kept = kept.reshape(patch.shape)
-        again = p.pull(patch, x, before, inverse, dt, family, bundle, kept, 0.7)
+        again = p.pull(patch, x, before, inverse, dt, family, bundle, kept)
         assert p.relative(again - v, expected - v) < 1e-7
-        assert p.relative(kept.ravel()[start], tension + dt * k * (g @ expected.ravel())) < 1e-6
+        assert p.relative(kept.ravel()[start], tension + VISCOUS * dt * k * (g @ expected.ravel())) < 1e-6
 
 
 @pytest.mark.parametrize("family", [1, 2])
@@ -126,17 +126,17 @@ def _propagator(patch, rest, w, dt, first):
     size, bars = rest.size, [parts[0][1].size, parts[1][1].size]
     whole = np.eye(2 * size + sum(bars))
     x, v = whole[:size], whole[size : 2 * size]
-    kept = [KEEP * whole[2 * size : 2 * size + bars[0]], KEEP * whole[2 * size + bars[0] :]]
+    kept = [whole[2 * size : 2 * size + bars[0]], whole[2 * size + bars[0] :]]
     v = v - dt * w[:, None] * sum(g.T @ t for (g, _, _), t in zip(parts, kept, strict=True))
     for turn in range(4):
         f = first - 1 if turn % 2 == 0 else 2 - first
         g, k, _ = parts[f]
         v = v + dt * w[:, None] * (g.T @ kept[f])
         v = np.linalg.solve(
-            np.eye(size) + dt * dt * w[:, None] * (g.T @ (k[:, None] * g)),
+            np.eye(size) + VISCOUS * dt * dt * w[:, None] * (g.T @ (k[:, None] * g)),
             v - dt * w[:, None] * (g.T @ (k[:, None] * (g @ x))),
         )
-        kept[f] = k[:, None] * (g @ (x + dt * v))
+        kept[f] = k[:, None] * (g @ (x + VISCOUS * dt * v))
     return np.vstack([x + dt * v, v, *kept])
 
 
@@ -167,22 +167,24 @@ def test_two_bars_are_stable(angle, stiffness):
 
     def step(first):
         whole = np.eye(6)
-        x, v, kept = whole[:2], whole[2:4], [KEEP * whole[4], KEEP * whole[5]]
+        x, v, kept = whole[:2], whole[2:4], [whole[4], whole[5]]
         for turn in range(4):
             i = first if turn % 2 == 0 else 1 - first
             without = v - np.outer(n[1 - i], kept[1 - i])
-            kept[i] = stiffness * n[i] @ (x + without) / (1.0 + stiffness)
+            kept[i] = stiffness * n[i] @ (x + VISCOUS * without) / (1.0 + VISCOUS * stiffness)
         v = v - sum(np.outer(a, t) for a, t in zip(n, kept, strict=True))
         return np.vstack([x + v, v, *kept])
 
     assert np.abs(np.linalg.eigvals(step(1) @ step(0))).max() < 1.0
 
 
-def test_sheared_ply_at_rest_stays_at_rest():
+@pytest.mark.parametrize("degrees", [50.0, 30.0])
+def test_sheared_ply_at_rest_stays_at_rest(degrees):
+    """And its tensions are those of its stretch, also where two that nearly cancel hardly move a node (30 degrees)."""
     rng = np.random.default_rng(4)
     patch = p.ply_patch(8, 8)
     u, v, _ = patch.rest
-    angle = np.deg2rad(50.0)
+    angle = np.deg2rad(degrees)
     x = np.array([u + v * np.cos(angle), v * np.sin(angle), 0.02 * u * v])
     mass, dt = np.full(patch.shape, 3e-8), 3e-5
     load = rng.normal(size=x.shape) * 0.02
@@ -195,9 +197,11 @@ def test_sheared_ply_at_rest_stays_at_rest():
         x = x + dt * speed
     left = load.copy()
     for family in (1, 2):
-        g, _, _ = _dense_parts(patch, x, family)
+        g, _, tension = _dense_parts(patch, x, family)
+        held = kept[family - 1].ravel()[_bars(patch, family)[0]]
+        assert np.abs(held - tension).max() < 0.02 * np.abs(held).max()
         left -= (g.T @ kept[family - 1].ravel()[_bars(patch, family)[0]]).reshape(x.shape)
-    assert np.abs(speed).max() < 3.0  # 391 with one sweep from nothing
+    assert np.abs(speed).max() < 0.05  # at 50 degrees 391 with one sweep from nothing
     free = inverse > 0.0
     assert np.abs(left[:, free]).max() < 0.1 * np.abs(load).max()
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from differences import gradient
 
-from ddf.elements.squeeze import squeeze_forces
+from ddf.elements.squeeze import SCRATCH, squeeze_forces
 
 SPACING, THICKNESS = (2.0, 1.5), 0.8
 
@@ -24,7 +24,7 @@ def _forces(x, v, press, seam=None):
     n, m = x.shape[1:]
     f, power = np.zeros_like(x), 0.0
     for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
-        power += squeeze_forces(x, v, f, _cells((n, m)), press, THICKNESS, low, high, np.zeros((13, m)))
+        power += squeeze_forces(x, v, f, _cells((n, m)), press, THICKNESS, low, high, np.zeros(SCRATCH))
     return f, power
 
 
@@ -94,7 +94,7 @@ def test_two_layers_on_a_drum_hand_on_the_pressure_and_not_more():
         cell = np.zeros((n, m))
         cell[:-1, :-1] = 2.0 * r * np.sin(0.5 * (angle[1] - angle[0]))
         f = np.zeros_like(x)
-        squeeze_forces(x, np.zeros_like(x), f, cell, np.full((n, m), force), t, 0, n, np.zeros((13, m)))
+        squeeze_forces(x, np.zeros_like(x), f, cell, np.full((n, m), force), t, 0, n, np.zeros(SCRATCH))
         return f[2, n // 2, 2]
 
     step = angle[1] - angle[0]
