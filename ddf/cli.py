@@ -19,6 +19,7 @@ from ddf.commands.init import init
 from ddf.commands.report import report
 from ddf.commands.run import run
 from ddf.commands.schema import schema
+from ddf.commands.study import study
 from ddf.commands.sweep import sweep
 from ddf.commands.verify import verify
 from ddf.errors import DdfError
@@ -53,9 +54,10 @@ def main() -> None:
     ddf check my-case.toml         what would run, without running it
     ddf run my-case.toml           run it; results go to runs/my-case
     ddf verify --quick             solve problems with known answers
+    ddf study stability            where the method fails, and that the guards see it
     ddf export fibres runs/my-case what the next program needs
     """  # noqa: D301 (click knows a paragraph that is not to be filled by this character)
 
 
-for _command in (run, check, init, schema, report, verify, compare, sweep, export):
+for _command in (run, check, init, schema, report, verify, compare, sweep, study, export):
     main.add_command(_command)

@@ -21,7 +21,7 @@ from ddf.output.folder import RunFolder
 from ddf.output.snapshot import SheetSnapshot, extrapolated
 from ddf.output.tables import write_metrics, write_pattern, write_profiles, write_wrinkles
 from ddf.output.vtu import TOOL, write_pvd, write_sheet, write_tool
-from ddf.provenance import provenance
+from ddf.provenance import peak_memory_mib, provenance
 
 FLAT_TIME, DRAPED_TIME = 0.0, 1.0  # of the two frames; a net knows no time
 
@@ -187,6 +187,7 @@ def _info(case: Case, drapes: list[Drape], wall: dict[str, float], failures: lis
         "stop_reason": "failed" if failures else "finished",
         "message": "\n".join(str(failure) for failure in failures),
         "wall_s": {key: round(value, 4) for key, value in wall.items()},
+        "peak_memory_MiB": peak_memory_mib(),
         "mesh": {"sheets": {d.mesh.name: {"rows": d.state.shape[0], "cols": d.state.shape[1]} for d in drapes}},
         "audit": [],
     }

@@ -44,7 +44,8 @@ def finish_folder(
     """
     surfaces, wrinkles, tables = measure(scene)
     across = [found.smallest_elements_across for found in wrinkles if found.count]
-    checks = audit(scene, energy, time, min(across) if across else None)
+    kinetic = open_run(out.path).history()["kinetic_mJ"]
+    checks = audit(scene, energy, time, min(across) if across else None, float(kinetic.max(initial=0.0)))
     write_profiles(out, surfaces)
     write_wrinkles(out, wrinkles)
     write_metrics(out, tables, audit=checks)

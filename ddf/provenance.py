@@ -43,6 +43,24 @@ def source_state() -> str:
     return done.stdout.strip()
 
 
+def peak_memory_mib() -> float | None:
+    """Largest memory that this process has held so far [MiB]; None where the system does not tell.
+
+    Linux: VmHWM of the process by itself (getrusage's figure begins with what its parent held).
+    """
+    try:
+        status = Path("/proc/self/status").read_text(encoding="utf-8")
+        return round(float(status.partition("VmHWM:")[2].split()[0]) / 1024, 1)
+    except (OSError, IndexError, ValueError):
+        pass
+    try:
+        import resource
+    except ImportError:
+        return None
+    unit = 2**20 if platform.system() == "Darwin" else 1024
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit, 1)
+
+
 def provenance() -> dict[str, Any]:
     """Version, source, packages, Python, host and time of writing."""
     return {

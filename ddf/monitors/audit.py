@@ -8,8 +8,11 @@ from typing import TypedDict
 import numpy as np
 
 from ddf.model import sheet_scalars, sheet_vectors
+from ddf.monitors.crossings import self_crossings
 from ddf.monitors.energy import Energies
+from ddf.monitors.layers import deep_share
 from ddf.monitors.stability import fibre_stretch
+from ddf.monitors.zigzag import zigzag_share
 from ddf.scene import Scene
 
 SAMPLES = 5
@@ -89,8 +92,13 @@ def fibre_strain_range(scene: Scene) -> tuple[float, float]:
     return low, high
 
 
-def audit(scene: Scene, energy: Energies, time: float, elements_across: float | None) -> list[Check]:
-    """All checks of a finished run. elements_across: least number of elements across a wrinkle, if any."""
+def audit(
+    scene: Scene, energy: Energies, time: float, elements_across: float | None, peak_kinetic: float = 0.0
+) -> list[Check]:
+    """All checks of a finished run. elements_across: least number of elements across a wrinkle, if any.
+
+    peak_kinetic: largest kinetic energy on the way [N mm].
+    """
     low, high = fibre_strain_range(scene)
     added = sum(s.added_mass for s in scene.sheets) / sum(s.true_mass for s in scene.sheets)
     checks = [
@@ -100,16 +108,40 @@ def audit(scene: Scene, energy: Energies, time: float, elements_across: float | 
         _check("largest fibre strain", 100 * max(-low, high), 0.3, "%", "fibres are as good as inextensible"),
         _check("added mass", 100 * added, 50.0, "% of all", "mass scaling of the plies is small"),
     ]
+    checks.append(crossing_check(sum(self_crossings(scene).values())))
+    if scene.model.pairs.size:
+        deep = 100.0 * deep_share(scene)
+        checks.append(_check("nodes deep in the next layer", deep, 1.0, "% of a sheet", "contact of layers was stiff"))
     if scene.tool_field is not None:
+        peak = 100.0 * peak_kinetic / max(energy.total_strain, 1e-12)
+        meaning = "inertia did not shape the part"
+        checks.append(_check("largest kinetic over final internal energy", peak, 30.0, "%", meaning))
         inside = ply_inside_tool(scene, time)
         checks.append(_check("deepest place of a ply in the tool", inside, 0.5, "mm", "layers lie in their order"))
     if scene.tool_mesh is not None:
         checks.append(_check("gap over the tool's apex", apex_gap(scene, time), 1.0, "mm", "the tool is covered"))
     if elements_across is not None:
-        check = _check("elements across the narrowest wrinkle", elements_across, 6.0, "", "wrinkles are resolved")
-        check["ok"] = elements_across >= check["limit"]
-        checks.append(check)
+        checks.append(across_check(elements_across))
+    checks.append(zigzag_check(scene))
     return checks
+
+
+def across_check(elements_across: float) -> Check:
+    """Whether there are elements enough across the narrowest wrinkle."""
+    check = _check("elements across the narrowest wrinkle", elements_across, 6.0, "", "wrinkles are resolved")
+    check["ok"] = elements_across >= check["limit"]
+    return check
+
+
+def crossing_check(edges: int) -> Check:
+    """Whether folds do not pass through themselves."""
+    return _check("edges of a sheet through itself", edges, 0.0, "", "folds have not passed through themselves")
+
+
+def zigzag_check(scene: Scene) -> Check:
+    """Whether wrinkles are not locked to the grid."""
+    share = 100.0 * zigzag_share(scene)
+    return _check("nodes in a zigzag of the grid", share, 1.0, "% of a ply", "wrinkles are not locked to the grid")
 
 
 def _check(name: str, value: float, limit: float, unit: str, meaning: str) -> Check:

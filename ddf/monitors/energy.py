@@ -41,6 +41,9 @@ from ddf.model import (
     sheet_vectors,
 )
 
+WORK_WORTH_MENTIONING = 1.0e4
+"""Energy errors of a run are judged against at least this much work [N mm] (10 J)."""
+
 
 @dataclass(frozen=True)
 class Energies:
@@ -78,6 +81,11 @@ class Energies:
         """Error over the work done (over all energies handled, where no work is done)."""
         scale = max(abs(self.total_work), self.total_strain + self.total_kinetic, 1e-12)
         return self.error / scale
+
+    @property
+    def error_percent(self) -> float:
+        """Error over the work done, or over WORK_WORTH_MENTIONING where less was done: what stops a run [%]."""
+        return 100.0 * self.error / max(abs(self.total_work), WORK_WORTH_MENTIONING)
 
     def kinetic_share(self, k: int | None = None) -> float:
         """Kinetic over internal (strain) energy, of sheet k or of all."""

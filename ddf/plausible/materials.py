@@ -4,13 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddf.case import Case, hyperelastic_material, woven_material
+from ddf.case import Case, WovenMaterial, hyperelastic_material, woven_material
 from ddf.materials import ogden
+from ddf.materials.shear_law import shear_samples
 from ddf.plausible.findings import Findings
 
 FABRIC_KG_M3 = (100.0, 4000.0)
 STRETCHES = np.linspace(1.0, 2.5, 31)  # the range of a forming's diaphragm
 SOFTEST_MPA, STIFFEST_MPA = 0.01, 100.0  # initial shear moduli of rubbers
+
+
+SHEAR_UP_TO_DEG = 60.0  # shear angles of forming
+
+
+def falling_range(weave: WovenMaterial) -> tuple[float, float] | None:
+    """Shear angles [deg] between which N_s of the law that will run falls; None where it rises everywhere."""
+    table = weave.shear_table
+    angle, force = shear_samples(
+        weave.shear_law, weave.thickness_mm, weave.shear_modulus_floor_MPa, weave.shear_modulus_polynomial_MPa,
+        None if table is None else (table.angle_deg, table.normalised_shear_force_N_mm),
+    )  # fmt: skip
+    degrees = np.rad2deg(angle)
+    down = np.flatnonzero((np.diff(force) < 0.0) & (degrees[1:] < SHEAR_UP_TO_DEG))
+    return (float(degrees[down[0]]), float(degrees[down[-1] + 1])) if down.size else None
 
 
 def examine_materials(case: Case, found: Findings) -> None:
@@ -26,6 +42,13 @@ def examine_materials(case: Case, found: Findings) -> None:
         if max(weave.bending_rigidity_Nmm) > solid:
             problem = f"{max(weave.bending_rigidity_Nmm):g} is more than that of a solid plate of this modulus"
             found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f"<= {solid:.3g}; check the units")
+        span = falling_range(weave)
+        if span is not None:
+            problem = (
+                f"the shear force falls between {span[0]:.3g} and {span[1]:.3g} deg of shear, where shear gathers in "
+                "bands one element wide"
+            )
+            found.warn(("materials", name, "shear_law"), problem, "'monotone', the closest law that is stable")
     for number, ply in enumerate(case.plies):
         if ply.formulation == "shell-membrane" and woven_material(case, ply.material).in_plane_bending_Nmm > 0.0:
             problem = "shell-membrane elements have no in-plane bending, which the material asks for"

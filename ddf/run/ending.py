@@ -9,7 +9,7 @@ import numpy as np
 
 from ddf.monitors.audit import Check
 from ddf.postprocess import finish_folder, report_of
-from ddf.provenance import provenance
+from ddf.provenance import peak_memory_mib, provenance
 from ddf.run.loop import Runner
 from ddf.run.progress import RunResult
 from ddf.scene import Scene
@@ -43,6 +43,7 @@ def write_info(runner: Runner, reason: str, message: str, checks: list[Check] | 
         "step_s": scene.model.dt,
         "step_limit_s": scene.step_limit,
         "wall_s": {key: round(value, 3) for key, value in runner.watch.seconds.items()},
+        "peak_memory_MiB": peak_memory_mib(),
         "mesh": mesh_summary(scene),
         "audit": checks or [],
     }

@@ -26,9 +26,6 @@ from ddf.simulate import Simulation
 REPORT_EVERY_S = 1.0
 """Wall time between two progress reports [s]."""
 
-WORK_WORTH_MENTIONING = 1.0e4
-"""Energy errors are judged against at least this much work [N mm] (10 J)."""
-
 
 class Runner:
     """The loop and what observes it."""
@@ -61,6 +58,7 @@ class Runner:
         self.out.sweep()
         self.frames_done = int(extra["frames_done"])
         self.earlier_wall = float(extra["wall_s"])
+        self.watch.seconds["steps"] = float(extra.get("steps_s", 0.0))
         self.sim.recount()
         self.energy = energies(self.scene.model, self.scene.state)
         self.history = HistoryWriter(self.out, self.names, self.sim.step)
@@ -151,8 +149,7 @@ class Runner:
             self.steps = self.sim.step
 
     def _guard_energy(self) -> None:
-        energy, limit = self.energy, self.scene.case.solver.energy_error_limit_percent
-        error = 100 * energy.error / max(abs(energy.total_work), WORK_WORTH_MENTIONING)
+        error, limit = self.energy.error_percent, self.scene.case.solver.energy_error_limit_percent
         if not abs(error) <= limit:
             raise UnstableError(
                 f"step {self.sim.step}, process time {self.sim.time:.6f} s: energy error of {error:.1f} % of the "
@@ -161,7 +158,8 @@ class Runner:
             )
 
     def _checkpoint(self, wall: float) -> None:
-        extra = {"frames_done": self.frames_done, "wall_s": self.earlier_wall + wall}
+        steps = self.watch.seconds.get("steps", 0.0)
+        extra = {"frames_done": self.frames_done, "wall_s": self.earlier_wall + wall, "steps_s": steps}
         save_checkpoint(self.out, self.scene, self.scene.state, extra)
 
     def _stage(self) -> str:
@@ -173,9 +171,8 @@ class Runner:
         done = max(1, self.sim.step - first_step)
         left = elapsed / done * (self.steps - self.sim.step)
         energy = self.energy
-        error = 100 * energy.error / max(abs(energy.total_work), WORK_WORTH_MENTIONING)
         return Progress(
-            self._stage(), self.sim.step, self.steps, self.sim.time, self.scene.model.dt, error,
+            self._stage(), self.sim.step, self.steps, self.sim.time, self.scene.model.dt, energy.error_percent,
             100 * energy.kinetic_share(), elapsed, left,
         )  # fmt: skip
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -54,6 +54,10 @@ class Bench:
     def simulation(self, threads: int = 1) -> Simulation:
         """The scene in motion."""
         return Simulation(cast(Scene, self), threads)
+
+    def with_step(self, dt: float) -> Bench:
+        """The same scene at another step [s]."""
+        return replace(self, model=self.model._replace(dt=dt))
 
     def x(self, k: int = 0) -> FloatArray:
         """Positions of sheet k, a view (3, n, m)."""

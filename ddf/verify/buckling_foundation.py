@@ -23,12 +23,12 @@ ELEMENT_MM, QUICK_ELEMENT_MM = 1.5, 2.5
 PLY = 1
 
 
-def _bedded(options: Options, element_mm: float, length: float) -> Scene:
-    """The strip between both diaphragms, its ends pinned."""
+def bedded(options: Options, element_mm: float, length: float, penalty: float = PENALTY_N_MM3) -> Scene:
+    """The strip between both diaphragms of contact stiffness `penalty` [N/mm3] each, its ends pinned."""
     whole = case_scene(
         fabric_of(options), (2.0 * element_mm, length), element_mm,
         friction={"ply_diaphragm": 0.0},
-        solver={"mass_scaling": 1.0, "contact_stiffness_N_mm3": PENALTY_N_MM3, "contact_damping": 0.0},
+        solver={"mass_scaling": 1.0, "contact_stiffness_N_mm3": penalty, "contact_damping": 0.0},
     )  # fmt: skip
     scene = damped(whole, 0.0)
     sheets = scene.model.sheets
@@ -47,7 +47,7 @@ def solve(options: Options) -> Answer:
     rigidity, foundation = fabric.bending_rigidity_Nmm[1], 2.0 * PENALTY_N_MM3
     element = options.element_mm or (QUICK_ELEMENT_MM if options.quick else ELEMENT_MM)
     length = WAVES * 2.0 * math.pi * (rigidity / foundation) ** 0.25
-    scenes = [(size, _bedded(options, size, length)) for size in (2.0 * element, element)]
+    scenes = [(size, bedded(options, size, length)) for size in (2.0 * element, element)]
     return wrinkling_answer(scenes, PLY, length, rigidity, foundation, areal_mass(fabric))
 
 

@@ -1,0 +1,61 @@
+"""Whether neighbouring layers lie in their order: how many nodes are deep in the sheet beside them, or through it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ddf.model import sheet_scalars, sheet_vectors
+from ddf.scene import Scene
+
+Array = NDArray[np.float64]
+
+DEEP = 0.5
+"""Part of the distance at which two sheets touch; nodes pressed in farther do not know on which side they belong."""
+
+NEAR = 4.0
+"""A node farther from the place it is followed at than this many of these distances is somewhere else."""
+
+
+def deep_share(scene: Scene) -> float:
+    """Share of the followed nodes over another sheet that are deeper in it than DEEP of their distance, the worst pair.
+
+    Signed distance d = sign r.n from the surface of `contact.patch` at the place (u, v) that contact keeps: also of
+    nodes that contact has lost.
+    """
+    worst = 0.0
+    for pair in scene.model.pairs:
+        slave, master = int(pair["slave"]), int(pair["master"])
+        x, y = sheet_vectors(scene.model, scene.state.x, slave), sheet_vectors(scene.model, scene.state.x, master)
+        cell = sheet_scalars(scene.model, scene.model.cell, master)
+        node = int(scene.model.sheets[master]["node"])
+        centre = scene.model.centre[2 * node : 2 * (node + cell.size)].reshape(*cell.shape, 2)
+        nodes, first = x[0].size, int(pair["first"])
+        u, v = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[:2]
+        i, j = (np.clip(p.astype(int), 0, n - 2) for p, n in zip((u, v), cell.shape, strict=True))
+        inside = scene.model.exposed[first : first + nodes] & (u >= 0) & (v >= 0) & (cell[i, j] > 0)
+        inside &= (u <= cell.shape[0] - 1) & (v <= cell.shape[1] - 1)
+        i, j = (np.clip((p[inside] + 0.5).astype(int), 0, n - 1) for p, n in zip((u, v), cell.shape, strict=True))
+        middle = centre[i, j]
+        surface, normal = _surface(y, middle, np.stack([u[inside], v[inside]], axis=1) - middle)
+        away = x.reshape(3, nodes)[:, inside] - surface
+        offset = float(pair["offset"])
+        near = (middle[:, 0] >= 0) & (np.linalg.norm(away, axis=0) < NEAR * offset)
+        deep = near & (float(pair["sign"]) * (away * normal).sum(axis=0) < (1.0 - DEEP) * offset)
+        worst = max(worst, float(deep.sum()) / max(int(inside.sum()), 1))
+    return worst
+
+
+def _surface(y: Array, middle: NDArray[np.int32], t: Array) -> tuple[Array, Array]:
+    """Points and normals (3, k) of the biquadratic B-spline of nodes y (3, n, m), t (k, 2) cells off nodes `middle`."""
+    weight = np.stack([0.5 * (0.5 - t) ** 2, 0.75 - t * t, 0.5 * (0.5 + t) ** 2])
+    slope = np.stack([t - 0.5, -2.0 * t, t + 0.5])
+    shift = np.arange(-1, 2)
+    rows, cols = middle[:, 0] + shift[:, None], middle[:, 1] + shift[:, None]
+    near = y[:, rows[:, None], cols[None]]  # (3, 3, 3, k)
+    point, along, across = (
+        np.einsum("cabk,ak,bk->ck", near, a[..., 0], b[..., 1])
+        for a, b in ((weight, weight), (slope, weight), (weight, slope))
+    )
+    normal = np.cross(along, across, axis=0)
+    return point, normal / np.maximum(np.linalg.norm(normal, axis=0), 1e-30)

@@ -1,0 +1,56 @@
+"""Guards of geometry: layers in their order, zigzags of the grid, sheets that pass through themselves."""
+
+import numpy as np
+import pytest
+from crossings import crossings
+
+from ddf.model import sheet_vectors
+from ddf.monitors.crossings import crossings_of, self_crossings
+from ddf.monitors.layers import deep_share
+from ddf.monitors.zigzag import zigzag_share
+
+COARSE = ("plies.0.element_mm=25", "diaphragms.element_mm=30")
+
+
+@pytest.fixture
+def scene(make_scene):
+    return make_scene("flat-stack", *COARSE)
+
+
+def test_a_flat_stack_is_in_order(scene):
+    assert deep_share(scene) == 0.0
+    assert zigzag_share(scene) == 0.0
+    assert self_crossings(scene) == {}
+
+
+@pytest.mark.parametrize(("lowered", "share"), [(0.4, 0.0), (0.9, 1.0), (2.5, 1.0)])
+def test_a_ply_pressed_into_or_through_the_diaphragm_is_deep_in_it(scene, lowered, share):
+    bottom, ply = (sheet_vectors(scene.model, scene.state.x, k) for k in (0, 1))
+    offset = float(scene.model.pairs["offset"][0])
+    ply[2] = bottom[2].mean() + (1.0 - lowered) * offset
+    assert deep_share(scene) == pytest.approx(share, abs=0.02)
+
+
+def test_nodes_up_and_down_in_turn_are_a_zigzag_and_a_wave_of_eight_elements_is_none(scene):
+    x = sheet_vectors(scene.model, scene.state.x, 1)
+    i = np.arange(x.shape[1])[:, None]
+    x[2] = 5.0 * np.sin(2.0 * np.pi * i / 8.0)
+    assert zigzag_share(scene) == 0.0
+    x[2] = 5.0 * (-1.0) ** i
+    assert zigzag_share(scene) > 0.5
+
+
+@pytest.mark.parametrize("turned", [0.5, 0.3])
+def test_crossings_are_those_of_an_independent_test(turned):
+    """A loop whose flanks cross, against VTK's search and a test of one edge at a time."""
+    s, v = np.meshgrid(np.linspace(-1.0, 1.0, 41), np.arange(5.0), indexing="ij")
+    x = np.array([10.0 * (s**3 - 0.5 * s), v + turned * s, 10.0 * s**2])
+    number = np.arange(s.size).reshape(s.shape)
+    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    known = crossings(x.reshape(3, -1).T, quads)
+    found = crossings_of(x, np.ones((40, 4), bool))
+    assert len(known) > 0
+    assert found > 0
+    assert crossings_of(np.array([10.0 * s, v, np.sin(3.0 * s)]), np.ones((40, 4), bool)) == 0
+    x[0] = 10.0 * (s**3 - 1.1 * s)  # flanks that do not meet again
+    assert (crossings_of(x, np.ones((40, 4), bool)) > 0) == (len(crossings(x.reshape(3, -1).T, quads)) > 0)
