@@ -16,7 +16,7 @@ def memory_bytes(scene: Scene) -> int:
     model = scene.model
     nodes = sum(int(s["rows"] * s["cols"]) for s in model.sheets)
     buffers = 0
-    for pair in model.pairs:
+    for pair in model.pairs[model.pairs["slave"] != model.pairs["master"]]:  # others: once a sheet touches itself
         master = model.sheets[pair["master"]]
         blocks = int((model.blocks["sheet"] == pair["slave"]).sum())
         buffers += 32 * int(master["rows"] * master["cols"]) * blocks
@@ -50,7 +50,9 @@ def describe_scene(scene: Scene) -> str:
         )
     bending = "with" if case.diaphragms.bending else "without"
     lines.append(f"  diaphragms: Ogden membrane {bending} plate bending, pre-stretch {case.diaphragms.pre_stretch:g}")
-    lines.append(f"  contact: {len(model.pairs)} pairs, {int(model.exposed.sum())} nodes followed; no self-contact")
+    layers, own = int((model.pairs["slave"] != model.pairs["master"]).sum()), case.solver.self_contact
+    folds = "sheets that fold touch themselves" if own else "no self-contact"
+    lines.append(f"  contact: {layers} pairs, {int(model.exposed.sum())} nodes followed; {folds}")
     if case.tool is None:
         lines.append("  tool: none")
     else:

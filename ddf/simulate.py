@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddf.contact.layers import NOWHERE, chunk_scratch
+from ddf.contact.self_search import SelfContact
 from ddf.contact.tool import PRESS
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
 from ddf.dynamics.team import Team
@@ -46,7 +47,7 @@ def make_work(model: Model, members: int) -> Work:
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
         pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, PRESS)),
         sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
-        rest=np.zeros(model.exposed.size, np.int8),
+        rest=np.zeros(model.exposed.size, np.int8), idle=np.zeros(model.pairs.size, bool),
         bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
         lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 9 * longest * LINES)),
     )  # fmt: skip
@@ -61,6 +62,7 @@ class Simulation:
         self.team = Team(threads)
         self.work = make_work(scene.model, threads)
         self._followed = np.where(scene.model.exposed, 0, -1).astype(np.int8)
+        self._self_contact = SelfContact(self.model, self.state, self.work.packed, self.work.rest, self.work.idle)
         self._volumes = self._swept()
 
     @property
@@ -103,6 +105,7 @@ class Simulation:
         self.work.sleep[:] = 0
         self.work.rest[:] = self._followed
         reach = self._reach_speed(schedule) * model.dt
+        self._self_contact.seek(reach * steps)
         self.team.run(advance, model, state, self.work, schedule, self.step, reach)
         state.clock[0] += steps
         state.clock[1] = state.clock[0] * model.dt

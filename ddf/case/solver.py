@@ -44,6 +44,7 @@ class Solver(Section):
     in_plane_pressure: bool = Field(
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."
     )
+    self_contact: bool = Field(default=True, description="Sheets that fold touch themselves, with friction.")
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
     hourglass: float = Field(
         default=0.05,

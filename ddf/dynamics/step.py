@@ -30,6 +30,7 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
+from ddf.contact.self_contact import drop_near
 from ddf.contact.tool import PRESS, settle_row, tool_forces
 from ddf.dynamics.team import barrier, draw
 from ddf.elements.bending import bending_forces
@@ -71,7 +72,7 @@ SCRATCH_ROWS = 72
 
 
 class Work(NamedTuple):
-    """Scratch memory. Nothing in it outlives a step but `sleep` and `rest`, set before every call of `advance`."""
+    """Scratch memory. Nothing outlives a step but `sleep`, `rest` and `idle`, set before every call of `advance`."""
 
     scratch: np.ndarray  # (members, SCRATCH_ROWS * (widest + 2))
     packed: np.ndarray  # (4 N,) positions as (x, y, z, cover)
@@ -90,6 +91,7 @@ class Work(NamedTuple):
     give: np.ndarray  # (members, PRESS)
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
+    idle: np.ndarray  # (pairs,) bool: pairs of self-contact in which no node is followed in this batch of steps
     bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
     bundles2: np.ndarray  # (k, 3): sheet, first and last+1 row: lines of family 2
     lines: np.ndarray  # (members, (6 (longest + 1) + 2) * LINES)
@@ -237,13 +239,18 @@ def _layers(model, state, work, member, b, dt, reach):
     scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member], work.chunks[3][member])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
-        if pair.slave != block.sheet:
+        if pair.slave != block.sheet or work.idle[k]:
             continue
         slave, master = model.sheets[pair.slave], model.sheets[pair.master]
         buffer, span = _buffer(work, model, pair, index)
         clear_buffer(buffer, span)
         n = slave.rows * slave.cols
         first = pair.first
+        place = state.place[5 * first : 5 * (first + n)].reshape((5, slave.rows, slave.cols))
+        slip = state.slip[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols))
+        rest = work.rest[first : first + n].reshape((slave.rows, slave.cols))
+        if pair.slave == pair.master:
+            drop_near(slave, model.lines, place, slip, rest, block.low, block.high)
         layer_forces(
             vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), normal,
             scalars(model.area, slave),
@@ -251,10 +258,7 @@ def _layers(model, state, work, member, b, dt, reach):
             model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
                 (master.rows, master.cols, 2)
             ),
-            state.place[5 * first : 5 * (first + n)].reshape((5, slave.rows, slave.cols)),
-            state.slip[2 * first : 2 * (first + n)].reshape((2, slave.rows, slave.cols)),
-            work.rest[first : first + n].reshape((slave.rows, slave.cols)),
-            buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
+            place, slip, rest, buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
         )  # fmt: skip
     state.springs[b, NORMAL_SPRING] = out[0]
     state.springs[b, TANGENTIAL_SPRING] = out[1]
@@ -300,7 +304,7 @@ def _collect(model, state, work, b):
             press[i, j] += SHARE * (normal[i, j] - press[i, j])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
-        if pair.master != block.sheet:
+        if pair.master != block.sheet or work.idle[k]:
             continue
         first = _first_block(model, pair.slave)
         index = 0

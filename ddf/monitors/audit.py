@@ -92,6 +92,18 @@ def fibre_strain_range(scene: Scene) -> tuple[float, float]:
     return low, high
 
 
+def self_contact(scene: Scene) -> tuple[int, float]:
+    """How many nodes touch their own sheet, and the deepest of them over the distance at which it touches itself."""
+    model, count, deepest = scene.model, 0, 0.0
+    for pair in model.pairs[model.pairs["slave"] == model.pairs["master"]]:
+        sheet = model.sheets[pair["slave"]]
+        first, nodes = int(pair["first"]), int(sheet["rows"] * sheet["cols"])
+        gap = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[2]
+        count += int(np.count_nonzero(gap < 0.0))
+        deepest = max(deepest, float(-gap.min() / pair["offset"]))
+    return count, deepest
+
+
 def audit(
     scene: Scene, energy: Energies, time: float, elements_across: float | None, peak_kinetic: float = 0.0
 ) -> list[Check]:
@@ -118,6 +130,10 @@ def audit(
         checks.append(_check("largest kinetic over final internal energy", peak, 30.0, "%", meaning))
         inside = ply_inside_tool(scene, time)
         checks.append(_check("deepest place of a ply in the tool", inside, 0.5, "mm", "layers lie in their order"))
+    touching, depth = self_contact(scene)
+    if touching:
+        meaning = f"folds that close keep their thickness ({touching} nodes touch their own sheet)"
+        checks.append(_check("deepest self-contact", 100 * depth, 50.0, "% of thickness", meaning))
     if scene.tool_mesh is not None:
         checks.append(_check("gap over the tool's apex", apex_gap(scene, time), 1.0, "mm", "the tool is covered"))
     if elements_across is not None:

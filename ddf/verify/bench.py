@@ -191,7 +191,7 @@ def _pairs(sheets: Sequence[Sheet], touches: Sequence[Touch]) -> tuple[np.ndarra
             (t.slave, t.master, first, buffer, span, t.sign, offset, t.friction, t.stiffness, damping, reduced)
         )
         place = _places(slave.start, master.start)
-        exposed.append(~slave.held.ravel())
+        exposed.append(~slave.held.ravel() & (t.slave != t.master))
         places.append(first_places(place))
         rows = slave.held.shape[0]
         blocks = math.ceil(rows / max(4, math.ceil(rows / 12)))

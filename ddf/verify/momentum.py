@@ -10,6 +10,8 @@ A ply's fibre tension keeps P but not L (its implicit string stiffness, see `ele
 part L is reported, and judged is the moment of all other forces in every step, sum x cross f over sum |x| |f|; also
 in a first step in which the places of the slave's nodes on the master are up to 0.9 cells off.
 
+A strip folded over, its flanks as deep in each other, gets the same velocities: it touches itself.
+
 The tool is rigid and takes momentum; a flat one without friction leaves P_x, P_y and L_z of a sheet alone.
 """
 
@@ -33,6 +35,7 @@ from ddf.verify.bench_sheets import (
     fabric_sheet,
     rubber_sheet,
 )
+from ddf.verify.folded import folded_sheet
 from ddf.verify.problem import Answer, Check, Curve, Figure, Options, Problem
 from ddf.verify.tool_fields import gridded, plane
 
@@ -47,6 +50,7 @@ PAIRS: dict[str, tuple[Make, Make]] = {
     "ply on ply": (fabric_sheet, fabric_sheet),
     "diaphragm on diaphragm": (rubber_sheet, rubber_sheet),
 }
+FOLDS: dict[str, Make] = {"diaphragm on itself": rubber_sheet, "ply on itself": fabric_sheet}
 
 
 @dataclass(frozen=True)
@@ -174,6 +178,8 @@ def solve(options: Options) -> Answer:
         name: watch(two_sheets(options, below, above, 0.5), options, steps, everything)
         for name, (below, above) in PAIRS.items()
     }
+    for name, make in FOLDS.items():
+        seen[name] = watch(folded_sheet(options, make, 0.5, PRESSED), options, steps, everything)
     seen["tool without friction"] = watch(on_tool(options, 0.0), options, steps, ([0, 1], [2]))
     rubbed = watch(on_tool(options, 0.3), options, steps, everything)
     checks, curves = [], []
@@ -183,18 +189,19 @@ def solve(options: Options) -> Answer:
         bound = None if "ply" in name else BOUND
         checks.append(Check(f"angular momentum lost, {name}", "-", 0.0, float(h.angular.max()), bound, relative=False))
         every = np.s_[:: max(1, steps // 60)]
-        if name in PAIRS:
+        if "tool" not in name:
             curves.append(Curve(name, table["step"][every], np.log10(np.maximum(h.moment, 1e-18))[every], True))
         key = name.replace(" ", "_")
         table |= {f"{key}_linear": h.linear, f"{key}_angular": h.angular, f"{key}_moment": h.moment}
-    for name, (below, above) in PAIRS.items():
+    for name in (*PAIRS, *FOLDS):
         checks.append(
             Check(f"moment of forces, {name}", "-", 0.0, float(seen[name].moment.max()), BOUND, relative=False)
         )
+    for name, (below, above) in PAIRS.items():
         for cells in MISPLACED:
             off = misplaced_moment(two_sheets(options, below, above, 0.5), options, cells)
             checks.append(Check(f"moment {cells:g} cells off, {name}", "-", 0.0, off, BOUND, relative=False))
-    for name, h in (*list(seen.items())[:3], ("tool", rubbed)):
+    for name, h in (*((name, seen[name]) for name in (*PAIRS, *FOLDS)), ("tool", rubbed)):
         checks.append(
             Check(f"least heat over all heat, {name}", "-", 0.0, min(h.least_heat, 0.0), 1e-12, relative=False)
         )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from numba import njit
@@ -16,7 +18,7 @@ from ddf.elements.shear import shear_forces
 from ddf.elements.tension import LINES, pull_lines, pull_rows
 from ddf.materials.shear_law import shear_samples, shear_table
 from ddf.model import PAIR, SHEET
-from ddf.simulate import Simulation
+from ddf.simulate import BATCH, Simulation
 
 SIZES = (88, 176, 351, 1000)
 OGDEN = np.array([[0.150904, 3.0918], [0.813392, 0.81451]])
@@ -154,3 +156,24 @@ def test_step_of_a_clamped_flat_stack(benchmark, make_scene, scene, threads):
     benchmark.extra_info["nodes"], benchmark.extra_info["tracked"] = nodes, tracked
     memory = sum(a.nbytes for part in (made.model, made.state, sim.work) for a in part if isinstance(a, np.ndarray))
     benchmark.extra_info["bytes_per_node"] = round(memory / nodes, 1)
+
+
+@pytest.mark.parametrize("scene", ["coarse", "2mm"])
+def test_self_contact_of_a_flat_stack(benchmark, make_scene, scene):
+    """What a flat stack pays for self-contact: the search before each batch of steps, in which nothing else is done."""
+    sizes = ("plies.0.element_mm=4", "diaphragms.element_mm=5") if scene == "coarse" else ()
+    made = make_scene("flat-stack", *sizes, "process.stages.0.duration_s=0.004", "process.stages.1.duration_s=0.5")
+    sim, fastest = Simulation(made), np.inf
+    while sim.time < 0.0045:
+        sim.advance(50)
+    for _ in range(20):
+        start = time.thread_time()
+        sim.advance(BATCH)
+        fastest = min(fastest, time.thread_time() - start)
+    own = made.model.pairs["slave"] == made.model.pairs["master"]
+    assert sim.work.idle[own].all()
+    assert not sim.work.idle[~own].any()
+    benchmark.pedantic(sim._self_contact.seek, args=(0.1,), rounds=40)
+    sim.close()
+    benchmark.extra_info["percent_of_steps"] = round(100.0 * benchmark.stats.stats.min / fastest, 2)
+    assert benchmark.stats.stats.min < 0.03 * fastest

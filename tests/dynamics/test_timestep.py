@@ -33,3 +33,16 @@ def test_bounds_sum_their_parts():
 def test_contact_damping_is_a_fraction_of_critical():
     assert contact_damping(0.5, 2.0, 2e-9, 2e-9) == pytest.approx(np.sqrt(2.0 * 1e-9))
     assert contact_damping(0.5, 2.0, 2e-9, np.inf) == pytest.approx(np.sqrt(2.0 * 2e-9))
+
+
+@pytest.mark.parametrize(("element", "least"), [(5, 1.0), (12, 0.97)])
+def test_self_contact_costs_no_step_but_with_large_elements(make_scene, element, least):
+    small = ("frame.length_mm=220", "frame.width_mm=180", "plies.0.size_mm=[100,100]", "plies.0.element_mm=5")
+    with_it, without = (
+        make_scene("flat-stack", *small, f"diaphragms.element_mm={element}", f"solver.self_contact={key}").model
+        for key in ("true", "false")
+    )
+    assert least <= with_it.dt / without.dt <= 1.0
+    own = with_it.pairs["slave"] == with_it.pairs["master"]
+    assert sorted(with_it.pairs["slave"][own]) == [0, 0, 1, 1, 2, 2]
+    assert not (without.pairs["slave"] == without.pairs["master"]).any()

@@ -3,7 +3,7 @@
 import pytest
 
 from ddf.model import sheet_vectors
-from ddf.monitors.audit import ply_inside_tool
+from ddf.monitors.audit import ply_inside_tool, self_contact
 
 
 def test_a_ply_below_the_top_of_the_tool_is_found(make_scene):
@@ -14,3 +14,12 @@ def test_a_ply_below_the_top_of_the_tool_is_found(make_scene):
     assert ply_inside_tool(scene, end) == 0.0
     ply[2] = scene.tool_z(end) + 50.0
     assert ply_inside_tool(scene, end) == pytest.approx(10.0, abs=0.05)  # a node on the axis of the 60 mm sphere
+
+
+def test_a_node_that_touches_its_own_sheet_is_counted(make_scene):
+    scene = make_scene("hemisphere", "plies.0.element_mm=5", "diaphragms.element_mm=10")
+    assert self_contact(scene) == (0, 0.0)
+    pair = scene.model.pairs[scene.model.pairs["slave"] == scene.model.pairs["master"]][0]
+    nodes = int(scene.model.sheets[pair["slave"]]["rows"] * scene.model.sheets[pair["slave"]]["cols"])
+    scene.state.place[5 * int(pair["first"]) :][2 * nodes + 7] = -0.3
+    assert self_contact(scene) == (1, pytest.approx(0.2))  # of 1.5 mm
