@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -13,7 +12,9 @@ from ddf.commands.common import INTERRUPTED, SET, SOME_FAILED, end_progress, say
 
 @click.command()
 @click.argument("what", metavar="NAME|FILE")
-@click.option("--case", type=click.Path(path_type=Path), help="Base case of a ready-made sweep.")
+@click.option(
+    "--case", type=click.Path(path_type=Path), help="Base case of a ready-made sweep  [default: a coarse one]"
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder  [default: runs/sweep-NAME]")
 @SET
 @click.option("--workers", type=click.IntRange(1, 1024), help="Cases at once  [default: as cores allow]")
@@ -45,6 +46,7 @@ def sweep(
     """
     from ddf.sweep.plan import assignments
     from ddf.sweep.sweep import make_plan, run_sweep
+    from ddf.sweep.text import progress_line
 
     plan = make_plan(what, case, overrides)
     if only_list:
@@ -55,7 +57,7 @@ def sweep(
     try:
         result = run_sweep(
             plan, folder, resume=resume, force=force, workers=workers, threads=threads,
-            scheduler=scheduler, report=None if quiet else lambda progress: say_over(_line(progress)),
+            scheduler=scheduler, report=None if quiet else lambda progress: say_over(progress_line(progress)),
         )  # fmt: skip
     except KeyboardInterrupt:
         click.echo(f"interrupted; go on with --resume -o {folder}", err=True)
@@ -72,11 +74,3 @@ def sweep(
     click.echo(f"table: {folder / 'table.csv'}; pictures: {folder / 'pictures'}")
     if result.failed:
         sys.exit(SOME_FAILED)
-
-
-def _line(p: Any) -> str:
-    running = ", ".join(f"{name} {100 * share:.0f} %" for name, share in p.running.items())
-    return (
-        f"{p.finished} of {p.cases} finished, {p.failed} failed; running {running or 'none'}; "
-        f"elapsed {p.elapsed_s:.0f} s"
-    )

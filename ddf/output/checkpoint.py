@@ -72,7 +72,12 @@ def load_checkpoint(folder: RunFolder, scene: Scene) -> dict[str, Any]:
 
 def case_hash(case: Case) -> str:
     """SHA-256 of all that decides a run's result: the resolved case but for its title and threads."""
-    return hashlib.sha256(json.dumps(_flat(resolved_toml(case)), sort_keys=True).encode()).hexdigest()
+    return text_hash(resolved_toml(case))
+
+
+def text_hash(resolved: str) -> str:
+    """The same of a case's resolved text."""
+    return hashlib.sha256(json.dumps(_flat(resolved), sort_keys=True).encode()).hexdigest()
 
 
 def case_differences(old: str, new: str) -> list[str]:

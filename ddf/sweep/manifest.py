@@ -14,7 +14,7 @@ from typing import Any
 
 from ddf.case import resolved_toml
 from ddf.errors import UsageError
-from ddf.output.checkpoint import CHECKPOINT, case_hash
+from ddf.output.checkpoint import CHECKPOINT, case_hash, text_hash
 from ddf.output.folder import RunFolder
 from ddf.provenance import provenance
 from ddf.sweep.plan import Plan
@@ -61,24 +61,30 @@ class SweepFolder:
         """What the case's process said."""
         return self.path / "logs" / f"{name}.txt"
 
-    def prepare(self, plan: Plan, resume: bool, force: bool) -> list[Entry]:
+    def prepare(self, plan: Plan, resume: bool, force: bool, extend: bool = False) -> list[Entry]:
         """Write the manifest and the cases, or with `resume` check that they are this sweep's.
 
+        `extend`: the folder may hold other cases besides; a run that is there is used if its case is the same.
         Raises UsageError for a folder in use, or one of another sweep.
         """
         cases = {point.name: plan.load(point) for point in plan.points}
         entries = [Entry(p.name, p.changes, case_hash(cases[p.name])) for p in plan.points]
-        if self.path.is_dir() and any(self.path.iterdir()) and not (resume or force):
+        others: list[Entry] = []
+        if self.path.is_dir() and any(self.path.iterdir()) and not (resume or force or extend):
             raise UsageError(f"{self.path} is not empty", "--resume goes on with the sweep in it, --force replaces it")
-        if resume and (self.path / MANIFEST).exists():
-            self._same(entries)
-        elif force:
+        if force:
             self._clear()
+        elif extend:
+            self._same_runs(entries)
+            if (self.path / MANIFEST).exists():
+                others = [entry for entry in self.entries() if entry.name not in cases]
+        elif resume and (self.path / MANIFEST).exists():
+            self._same(entries)
         for point in plan.points:
             self.out.write_text(f"cases/{point.name}.toml", resolved_toml(cases[point.name]))
         self.out.write_json(MANIFEST, provenance() | {
             "title": plan.title, "case": str(plan.case), "common": list(plan.common),
-            "cases": [asdict(entry) for entry in entries],
+            "cases": [asdict(entry) for entry in entries + others],
         })  # fmt: skip
         return entries
 
@@ -90,6 +96,19 @@ class SweepFolder:
             raise UsageError(
                 f"{self.path} holds another sweep; cases that differ: {', '.join(other[:10])}",
                 "resume with the sweep as it was, replace it with --force, or choose another folder with -o",
+            )
+
+    def _same_runs(self, entries: list[Entry]) -> None:
+        """Raise UsageError where a run of another case has a case's name."""
+        other = []
+        for entry in entries:
+            file = self.run_folder(entry.name) / "case.resolved.toml"
+            if file.is_file() and text_hash(file.read_text(encoding="utf-8")) != entry.hash:
+                other.append(entry.name)
+        if other:
+            raise UsageError(
+                f"{self.path} holds runs of other cases: {', '.join(other[:10])}",
+                "replace them with --force, or choose another folder with -o",
             )
 
     def _clear(self) -> None:

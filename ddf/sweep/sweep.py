@@ -17,6 +17,7 @@ from ddf.sweep.runner import Runner, SweepProgress
 from ddf.sweep.table import sweep_rows, swept_keys, write_rows
 
 DEFAULT_CASE = "tetrahedron-0-90-coarse"
+DEFAULT_CASES = dict.fromkeys(("friction", "loading"), "tetrahedron-double-coarse")  # sections 3.4, 3.5: of two plies
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,11 @@ class SweepResult:
 def make_plan(what: str, case: Path | None = None, common: tuple[str, ...] = ()) -> Plan:
     """The plan of a ready-made sweep by its name, or of a sweep file; every case is checked.
 
-    `case`: base case of a ready-made sweep, left out: the shipped coarse one. Raises CaseError, UsageError.
+    `case`: base case of a ready-made sweep, left out: a shipped coarse one, of two plies where the paper's study has
+    two. Raises CaseError, UsageError.
     """
     if what in NAMED:
-        base = case or Path(DEFAULT_CASE)
+        base = case or Path(DEFAULT_CASES.get(what, DEFAULT_CASE))
         plan = Plan(f"{what}: {base.stem}", base, tuple(NAMED[what](load_case(base, common))), common)
         check_cases(plan, str(base), {})
         return plan
@@ -67,6 +69,7 @@ def run_sweep(
     *,
     resume: bool = False,
     force: bool = False,
+    extend: bool = False,
     workers: int | None = None,
     threads: int | None = None,
     scheduler: str | None = None,
@@ -74,13 +77,14 @@ def run_sweep(
 ) -> SweepResult:
     """Run what of a sweep has not finished yet, then write its table and pictures.
 
+    `extend`: the folder may hold other cases besides; a run that is there is used if its case is the same.
     `scheduler`: address of a Dask scheduler that runs the cases (threads of each: 1, unless given), else they
     run in local processes. Raises UsageError for a folder in use or of another sweep. A KeyboardInterrupt goes
     through, after the cases have written their checkpoints.
     """
     plan = replace(plan, workers=workers or plan.workers, threads=threads or plan.threads)
     place = SweepFolder(folder)
-    entries = place.prepare(plan, resume, force)
+    entries = place.prepare(plan, resume, force, extend)
     runner = Runner(place, entries)
     reused = len(entries) - len(runner.to_do())
     if scheduler is None:

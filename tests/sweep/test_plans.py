@@ -134,6 +134,7 @@ def test_ready_made_sweeps_change_what_they_say():
     cases = {name: [make_plan(name).load(p) for p in make_plan(name).points] for name in NAMED}
     assert [case.friction.ply_ply for case in cases["friction"]] == [0.0, 0.14, 0.28, 0.42]
     assert all([p.orientation_deg for p in case.plies] == [45.0, 0.0] for case in cases["friction"])
+    assert all([p.orientation_deg for p in case.plies] == [45.0, 0.0] for case in cases["loading"])
     lift_first, together, box_first = (case.process.stages for case in cases["loading"])
     assert [s.name for s in lift_first] == ["evacuate-cavity", "lift", "draw-down", "evacuate-box", "hold"]
     assert [s.name for s in box_first] == ["evacuate-cavity", "draw-down", "evacuate-box", "lift", "hold"]

@@ -46,7 +46,7 @@ def test_unknown_names_are_usage_errors_with_near_misses(run):
 def test_list_solves_nothing(run, tmp_path):
     result = run("--list")
     assert result.exit_code == 0
-    assert [line.split()[0] for line in result.output.splitlines()] == list(PROBLEMS)
+    assert [line.split()[0] for line in result.output.splitlines()] == [*PROBLEMS, "paper"]
     assert not (tmp_path / "out").exists()
 
 
