@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 APART = 2
 """Cells at most this far apart on the grid along both directions are neighbours."""
 
+FLATTEST = 1e-9
+"""Sine of the angle below which an edge lies in a triangle's plane (cells on the platform do) and does not pass it."""
+
 CORNERS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
 TRIANGLES = ((0, 1, 2), (0, 2, 3))
@@ -58,8 +61,10 @@ def _through(start: Array, end: Array, a: Array, b: Array, c: Array) -> NDArray[
     d, u, v = end - start, b - a, c - a
     h = np.cross(d, v)
     det = (u * h).sum(axis=1)
-    safe = np.where(np.abs(det) < 1e-14, np.inf, det)
+    size = np.linalg.norm(d, axis=1) * np.linalg.norm(np.cross(u, v), axis=1)
+    slant = np.abs(det) > FLATTEST * size
+    safe = np.where(slant, det, np.inf)
     s = start - a
     q = np.cross(s, u)
     r, t, w = (s * h).sum(axis=1) / safe, (d * q).sum(axis=1) / safe, (v * q).sum(axis=1) / safe
-    return (np.abs(det) >= 1e-14) & (r >= 0.0) & (t >= 0.0) & (r + t <= 1.0) & (w >= 0.0) & (w <= 1.0)
+    return slant & (r >= 0.0) & (t >= 0.0) & (r + t <= 1.0) & (w >= 0.0) & (w <= 1.0)

@@ -54,3 +54,11 @@ def test_crossings_are_those_of_an_independent_test(turned):
     assert crossings_of(np.array([10.0 * s, v, np.sin(3.0 * s)]), np.ones((40, 4), bool)) == 0
     x[0] = 10.0 * (s**3 - 1.1 * s)  # flanks that do not meet again
     assert (crossings_of(x, np.ones((40, 4), bool)) > 0) == (len(crossings(x.reshape(3, -1).T, quads)) > 0)
+
+
+def test_cells_in_one_plane_do_not_cross():
+    """Long cells of a graded grid on a plane, not flat to the last digit: near each other and never through."""
+    rng = np.random.default_rng(5)
+    u, v = np.meshgrid(np.linspace(0.0, 300.0, 12), np.linspace(0.0, 60.0, 41), indexing="ij")
+    x = np.array([u, v, rng.normal(size=u.shape) * 1e-14])
+    assert crossings_of(x, np.ones((11, 40), bool)) == 0
