@@ -82,7 +82,7 @@ def build_scene(case: Case) -> Scene:
     pairs, exposed, places = _pairs(case, stack, masses, sheets)
     blocks = row_blocks(sheets)
     friction, solver = case.friction, case.solver
-    on_tool = solver.tool_contact_stiffness_N_mm3 or timestep.tool_stiffness(masses[0], dt)
+    on_tool = solver.tool_contact_stiffness_N_mm3
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
     model = Model(
         sheets=sheets, blocks=blocks, pairs=pairs, **pools,

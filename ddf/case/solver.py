@@ -38,10 +38,9 @@ class Solver(Section):
     contact_stiffness_N_mm3: float = Field(
         default=3.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
-    tool_contact_stiffness_N_mm3: float | None = Field(
-        default=None, gt=0, le=1e4,
-        description="Penalty on the tool [N/mm3]: pressure per penetration. Left out: 25 m/dt2 of the diaphragm's "
-        "areal mass m and the step dt, at most 200.",
+    tool_contact_stiffness_N_mm3: float = Field(
+        default=100.0, gt=0, le=1e4,
+        description="Penalty on the tool [N/mm3]: pressure per penetration; three times that beyond 0.1 mm.",
     )  # fmt: skip
     in_plane_pressure: bool = Field(
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."

@@ -6,9 +6,10 @@ gradient n is pushed by
 
     (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
 
-(v*: the velocity at the end of the step without the tool: by then it would still be pushed), and held by
-Coulomb friction on a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v
-is the spring's force at the place that the point is moving to. The force goes to the node, or to the cell's four
+(v*: the velocity at the end of the step without the tool: by then it would still be pushed; beyond the depth HARD by
+e it is K A (HARDENING - 1) e more, and HARDENING K at the rate), and held by Coulomb friction on a spring to its anchor
+of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v is the spring's force at the place that the point is
+moving to. The force goes to the node, or to the cell's four
 with the point's bilinear weights N_i, and with it the tensor
 
     J_i = N_i (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
@@ -33,11 +34,21 @@ from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.elements.tension import FAST
 
 FREE = 1.0e30
+HARD, HARDENING = 0.1, 3.0
+"""Depth [mm] beyond which the penalty is stiffer, and how much: on apexes, where fibres press with some 10 MPa."""
 LONGEST_SLEEP = 16
 
 #: columns of `press`, what the tool does to each node: force [N], tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous
 #: part of the force [N]
 PRESS = 12
+
+
+@njit(inline="always")
+def _spring(k, depth):
+    """Force of the penalty at a depth, and what it stores."""
+    excess = max(0.0, depth - HARD)
+    force = k * (depth + (HARDENING - 1.0) * excess)
+    return force, 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
 
 
 @njit(inline="always")
@@ -63,25 +74,31 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
             out[3] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
-            out[3] -= 0.5 * k * before * (dt * rate - before)
+            spring, stored = _spring(k, before)
+            out[3] += stored - 0.5 * spring * dt * rate
         anchor[0] = FREE
         return False
     px, py, pz = p
-    c += dt * k
+    spring, stored = _spring(k, -near)
+    drag = TANGENTIAL * (c + dt * k)
+    c += dt * k * (HARDENING if near < -HARD else 1.0)
     inertia = dt * c
-    spring = -k * near
     pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
     normal = spring - c * rate if pushed else 0.0
-    out[0] -= 0.5 * spring * near
-    if anchor[0] >= FREE:
+    out[0] += stored
+    new = anchor[0] >= FREE
+    before = 0.0 if new else max(0.0, dt * rate - near)
+    if new or (before > HARD) != (near < -HARD):  # the mean force acts on the way, but stores less where it has a kink
+        held, left = _spring(k, before)
+        out[3] -= 0.5 * (spring + held) * dt * rate + stored - left
+    if new:
         anchor[0], anchor[1], anchor[2] = px, py, pz
-        out[3] += 0.5 * k * near * (dt * rate - near)
     sx, sy, sz = px - anchor[0], py - anchor[1], pz - anchor[2]
     s = sx * nx + sy * ny + sz * nz
     sx, sy, sz = sx - s * nx, sy - s * ny, sz - s * nz
     vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
-    k, c = TANGENTIAL * k, TANGENTIAL * c
-    tx, ty, tz = -k * sx - c * vx, -k * sy - c * vy, -k * sz - c * vz
+    k *= TANGENTIAL
+    tx, ty, tz = -k * sx - drag * vx, -k * sy - drag * vy, -k * sz - drag * vz
     limit = mu * max(0.0, normal)
     share = coulomb(length(tx, ty, tz), limit)
     tx, ty, tz = tx * share, ty * share, tz * share
@@ -94,7 +111,7 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     before = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
     out[2 if pushed else 3] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
     held = k * keep
-    along = inertia * TANGENTIAL * share
+    along = dt * drag * share
     across = (inertia if pushed else 0.0) - along
     viscous = normal - spring
     give[0], give[1], give[2] = normal * nx + tx, normal * ny + ty, normal * nz + tz

@@ -66,14 +66,6 @@ def diaphragm_omega2(
     return (16.0 * mu * thickness * q + 16.0 * rigidity * q * q + 2.0 * contact) / mass
 
 
-def tool_stiffness(mass: float, step: float) -> float:
-    """Penalty on the tool [N/mm3] for an areal mass [tonne/mm2] and a step [s]: K dt^2/m = 25, at most 200.
-
-    Implicit, it sets no limit to the step, but at 49 a formed part rang on, at 25 none did (docs/solver.md).
-    """
-    return min(200.0, 25.0 * mass / step**2)
-
-
 def contact_damping(fraction: float, stiffness: float, mass_a: float, mass_b: float) -> float:
     """Damping per area 2 z sqrt(K m) [N s/mm3], m the reduced areal mass of the two sheets [tonne/mm2]."""
     reduced = mass_a * mass_b / (mass_a + mass_b) if np.isfinite(mass_b) else mass_a
