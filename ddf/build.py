@@ -13,7 +13,7 @@ from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
 from ddf.contact.layers import UNKNOWN
 from ddf.contact.patch import edge_cover, patch_centres
-from ddf.contact.tool import FREE
+from ddf.contact.tool import FREE, POINTS
 from ddf.dynamics import timestep
 from ddf.elements.bending import tangent_weights
 from ddf.elements.shell_membrane.history import HISTORY, M_C11, M_C22, S_C11, S_C22
@@ -401,7 +401,7 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray) -> State:
     """A fresh state: positions x (3 N,), first places of all pairs, nothing in motion, no tension, no anchor."""
     sheet = model.sheets[model.tool_sheet]
     nodes = (int(sheet["rows"]), int(sheet["cols"])) if model.tool_sheet >= 0 else (1, 1)
-    anchors = np.zeros((*nodes, 5, 3))
+    anchors = np.zeros((*nodes, POINTS, 3))
     anchors[..., 0] = FREE
     shells = model.sheets["kind"] == SHELL_PLY
     size = int((model.sheets["rows"] * model.sheets["cols"])[shells].sum())
@@ -444,7 +444,7 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
     wanted = []
     for k in range(1, top):
         wanted += [(k, 0, 1.0, friction.ply_diaphragm), (k, top, -1.0, friction.ply_diaphragm)]
-        wanted += [(k, j, 1.0, friction.ply_ply) for j in range(1, k)]
+        wanted += [(k, j, math.copysign(1.0, k - j), friction.ply_ply) for j in range(1, top) if j != k]
     # each diaphragm against the other at half stiffness: one way only, small errors in how a graded grid
     # passes on a pressure push the whole stack to one side
     wanted += [(top, 0, 1.0, friction.diaphragm_diaphragm), (0, top, -1.0, friction.diaphragm_diaphragm)]
@@ -462,7 +462,7 @@ def _pairs(case: Case, stack: _Stack, masses: list[float], sheets: np.ndarray):
         stiffness = case.solver.contact_stiffness_N_mm3
         if slave == master and slave in (0, top):
             stiffness, damping = _own_contact(case, masses[slave])
-        if {slave, master} == {0, top} or slave == master:  # both ways
+        if (slave in (0, top)) == (master in (0, top)):  # each is slave of the other as well
             stiffness, damping = 0.5 * stiffness, 0.5 * damping
         reduced = masses[slave] * masses[master] / (masses[slave] + masses[master])
         records.append((slave, master, first, buffer, span, sign, offset, mu, stiffness, damping, reduced))

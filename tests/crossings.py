@@ -1,15 +1,14 @@
-"""Where sheets cross each other or themselves: exact tests of edges against triangles, by VTK's cell locator.
+"""Where sheets cross each other or themselves: exact tests of edges against triangles.
 
 Two triangulated surfaces cross if and only if an edge of one passes through a triangle of the other. Each quadrilateral
-is split along one diagonal, the same in all sheets. Independent of the solver: it sees positions only.
+is split along one diagonal, the same in all sheets. Independent of the solver: it sees positions only. Pairs that
+can meet are found by trees of the triangles' centres, one for each class of sizes.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCellLocator
+from scipy.spatial import cKDTree
 
 
 def crossings(points, quads, other=None, other_quads=None):
@@ -17,20 +16,12 @@ def crossings(points, quads, other=None, other_quads=None):
     own = other is None
     faces = _triangles(quads)
     other, other_faces = (points, faces) if own else (other, _triangles(other_quads))
-    locator, keep = _locator(other, other_faces)
-    hits, found = vtkIdList(), []
-    for p, q in _edges(faces):
-        start, end = points[p], points[q]
-        locator.FindCellsAlongLine(start, end, 0.0, hits)
-        for k in range(hits.GetNumberOfIds()):
-            face = other_faces[hits.GetId(k)]
-            if own and (p in face or q in face):
-                continue
-            place = _through(start, end, *other[face])
-            if place is not None:
-                found.append(place)
-    del keep
-    return np.array(found).reshape(-1, 3)
+    edges = _edges(faces)
+    which, face = _near(points[edges], other[other_faces])
+    if own:
+        apart = (edges[which][:, :, None] != other_faces[face][:, None, :]).all(axis=(1, 2))
+        which, face = which[apart], face[apart]
+    return _through(points[edges[which]], other[other_faces[face]])
 
 
 def crossings_of_frame(run, sheets, index=-1):
@@ -51,35 +42,36 @@ def _triangles(quads):
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def _locator(points, faces):
-    cells, grid, where = vtkCellArray(), vtkPolyData(), vtkPoints()
-    flat = np.column_stack([np.full(len(faces), 3), faces]).ravel().astype(np.int64)
-    cells.ImportLegacyFormat(numpy_to_vtkIdTypeArray(flat, deep=True))
-    where.SetDataTypeToDouble()
-    where.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    grid.SetPoints(where)
-    grid.SetPolys(cells)
-    locator = vtkStaticCellLocator()
-    locator.SetDataSet(grid)
-    locator.BuildLocator()
-    return locator, grid
-
-
 def _edges(faces):
     pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return np.unique(np.sort(pairs, axis=1), axis=0)
 
 
-def _through(start, end, a, b, c):
-    """Where a segment passes through a triangle (Moeller and Trumbore, 1997), else None."""
-    d, u, v = end - start, b - a, c - a
+def _near(segments, corners):
+    """Numbers of all segments (k, 2, 3) and triangles (q, 3, 3) whose bounding spheres meet, among others."""
+    middle, half = segments.mean(axis=1), 0.5 * np.linalg.norm(np.diff(segments, axis=1)[:, 0], axis=1)
+    centre = corners.mean(axis=1)
+    radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+    size = np.ceil(2.0 * np.log2(np.maximum(radius, 1e-9))).astype(int)
+    which, face = [], []
+    for k in np.unique(size):
+        members = np.flatnonzero(size == k)
+        found = cKDTree(centre[members]).query_ball_point(middle, half + radius[members].max())
+        count = np.array([len(hits) for hits in found])
+        which.append(np.repeat(np.arange(len(middle)), count))
+        face.append(members[np.concatenate([np.asarray(hits, dtype=int) for hits in found])])
+    return np.concatenate(which), np.concatenate(face)
+
+
+def _through(segments, corners):
+    """Places where segments (k, 2, 3) pass through their triangles (k, 3, 3) (Moeller and Trumbore, 1997)."""
+    start, d = segments[:, 0], segments[:, 1] - segments[:, 0]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     h = np.cross(d, v)
-    det = u @ h
-    if abs(det) < 1e-14:
-        return None
-    s = start - a
+    det = (u * h).sum(axis=1)
+    s = start - corners[:, 0]
     q = np.cross(s, u)
-    r, t, w = s @ h / det, d @ q / det, v @ q / det
-    if r < 0.0 or t < 0.0 or r + t > 1.0 or w < 0.0 or w > 1.0:
-        return None
-    return start + w * d
+    along = np.where(np.abs(det) < 1e-14, np.inf, det)
+    r, t, w = ((a * b).sum(axis=1) / along for a, b in ((s, h), (d, q), (v, q)))
+    meets = np.isfinite(along) & (r >= 0.0) & (t >= 0.0) & (r + t <= 1.0) & (w >= 0.0) & (w <= 1.0)
+    return start[meets] + w[meets, None] * d[meets]

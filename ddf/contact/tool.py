@@ -1,4 +1,4 @@
-"""Contact of a diaphragm with the rigid tool and the platform around it, implicit in time.
+"""Contact of a diaphragm with the rigid tool, the platform around it and the box's walls, implicit in time.
 
 The platform is met by the nodes (d = z, n = e_z), the tool by nodes, middles of edges and centres of cells, so that
 no ridge passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and
@@ -20,6 +20,13 @@ entries are positive), so the tool, however stiff, sets no limit to the step: wi
 leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
 forces is dissipation, booked with the mid-step velocity.
 
+Where all four corners of the sheet are held, as in a frame, the box has walls: vertical planes through the frame's
+edges that keep nodes inside, without friction. A vacuum of 0.1 MPa over a box 82 mm deep else blows the rubber out
+under the frame until it bursts at the corners. And while the platform stands lower than the frame, by over half a
+thickness, friction on it does not hold the nodes next to the frame, nor those nearer to the walls than it is deep: as
+it comes up the sheet rolls off the walls on this rim, and cells that stick there are crushed between frame and platform
+like struts, on which they press with more than the sheet's pressure.
+
 Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
 to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not
 look at it for as many steps as it needs at the given reach to come near.
@@ -36,6 +43,8 @@ from ddf.elements.tension import FAST
 FREE = 1.0e30
 HARD, HARDENING = 0.1, 3.0
 """Depth [mm] beyond which the penalty is stiffer, and how much: on apexes, where fibres press with some 10 MPa."""
+WALL, POINTS = 5, 7
+"""Of the contact points of a node: the first on a wall, and how many there are."""
 LONGEST_SLEEP = 16
 
 #: columns of `press`, what the tool does to each node: force [N], tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous
@@ -125,6 +134,12 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     return True
 
 
+@njit(**FAST)
+def _rare_point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
+    """`_point`, compiled once for where it is not worth a copy of its own."""
+    return _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give)
+
+
 @njit(inline="always")
 def _put(row, weight, give):
     """Add a point's share to a node's row of press (PRESS,)."""
@@ -152,6 +167,42 @@ def _dual(d, j):
     return 0.5 * ((d[j - 1] if j > 0 else 0.0) + (d[j] if j < d.shape[0] else 0.0))
 
 
+@njit(inline="always")
+def _framed(inverse):
+    """Whether the four corners of a sheet are held."""
+    n, m = inverse.shape[0] - 1, inverse.shape[1] - 1
+    return inverse[0, 0] + inverse[n, 0] + inverse[0, m] + inverse[n, m] == 0.0
+
+
+@njit(inline="always")
+def _from_wall(x, i, j):
+    """Distance of node (i, j) from the nearest wall [mm]."""
+    n, m = x.shape[1] - 1, x.shape[2] - 1
+    across = min(x[0, i, j] - x[0, 0, 0], x[0, n, m] - x[0, i, j])
+    return min(across, x[1, i, j] - x[1, 0, 0], x[1, n, m] - x[1, i, j])
+
+
+@njit(**FAST)
+def _walls(x, v, f, inverse, area, k, c, dt, i, j, anchors, out, give, press, pressed):
+    """Let the box's walls keep node (i, j) inside; k, c per area; other arguments as in `tool_forces`."""
+    n, m = x.shape[1] - 1, x.shape[2] - 1
+    for axis in range(2):
+        low, high = x[axis, 0, 0], x[axis, n, m]
+        inward = 1.0 if x[axis, i, j] < 0.5 * (low + high) else -1.0
+        d = x[axis, i, j] - low if inward > 0.0 else high - x[axis, i, j]
+        anchor = anchors[i, j, WALL + axis]
+        if (d >= 0.0 and anchor[0] >= FREE) or inverse[i, j] == 0.0:
+            continue
+        p, u = (x[0, i, j], x[1, i, j], x[2, i, j]), (v[0, i, j], v[1, i, j], v[2, i, j])
+        h = dt * inverse[i, j]
+        ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
+        normal = (inward, 0.0, 0.0) if axis == 0 else (0.0, inward, 0.0)
+        a = area[i, j]
+        if _rare_point(p, u, ahead, d, normal, 0.0, k * a, c * a, 0.0, dt, anchor, out, give):
+            pressed[i] = True
+            _put(press[i, j], 1.0, give)
+
+
 @njit(**FAST)
 def tool_forces(
     x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors,
@@ -162,17 +213,21 @@ def tool_forces(
     x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
     pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
     law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a point can go
-    in a step [mm]; anchors (n, m, 5, 3): of the node on the platform, then of the node, the
-    middles of the edges along columns and rows, and the centre on the tool; sleep (n, m) int16; out (4,)
-    as in `_point`; give (PRESS,) scratch.
+    in a step [mm]; anchors (n, m, POINTS, 3): of the node on the platform, then of the node, the
+    middles of the edges along columns and rows, and the centre on the tool, of the node on the walls across x and y;
+    sleep (n, m) int16; out (4,) as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
     z, speed = motion
     n, m = x.shape[1], x.shape[2]
     work = 0.0
     carried = False
+    framed = _framed(inverse)
+    depth = x[2, 0, 0] - offset - z if framed else 0.0
     for i in range(low, high):
         for j in range(m):
+            if framed and _from_wall(x, i, j) < reach:  # one that touched a step ago is no farther
+                _walls(x, v, f, inverse, area, stiffness, damping, dt, i, j, anchors, out, give, press, pressed)
             if x[2, i, j] - z >= offset and anchors[i, j, 0, 0] >= FREE:
                 continue
             p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
@@ -180,7 +235,9 @@ def tool_forces(
             h = dt * inverse[i, j]
             ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
             a, up = area[i, j], (0.0, 0.0, 1.0)
-            if _point(p, u, ahead, p[2], up, offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 0], out, give):
+            rim = depth > offset and (i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, i, j) < depth)
+            rough, k_a, c_a = 0.0 if rim else mu, stiffness * a, damping * a
+            if _point(p, u, ahead, p[2], up, offset, k_a, c_a, rough, dt, anchors[i, j, 0], out, give):
                 work += give[2] * speed * dt
                 pressed[i] = True
                 _put(press[i, j], 1.0, give)

@@ -84,10 +84,7 @@ def fibre_strain_range(scene: Scene) -> tuple[float, float]:
     """Least and largest fibre strain ln(lambda) of all plies."""
     low, high = 0.0, 0.0
     for k in scene.ply_sheets:
-        s = scene.model.sheets[k]
-        active = sheet_scalars(scene.model, scene.model.mass, k) > 0
-        x = sheet_vectors(scene.model, scene.state.x, k)
-        for strain in fibre_stretch(x, active, (float(s["a1"]), float(s["a2"]))):
+        for strain in fibre_stretch(scene.model, sheet_vectors(scene.model, scene.state.x, k), k):
             low, high = min(low, float(strain.min())), max(high, float(strain.max()))
     return low, high
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from ddf.model import DIAPHRAGM, Model, State, sheet_vectors
+from ddf.elements.rubber import cell_metric
+from ddf.model import DIAPHRAGM, Model, State, sheet_scalars, sheet_vectors
+from ddf.monitors.alarm import Alarm, alarm_at
 
 LARGEST_FIBRE_STRAIN = 0.10
 """Beyond this the series of the fibres' law no longer holds (`elements.tension`)."""
@@ -15,24 +16,12 @@ LARGEST_FIBRE_STRAIN = 0.10
 FARTHEST_MM = 1.0e8
 """No node is farther from the origin."""
 
+LEAST_STRETCH, LARGEST_STRETCH = 0.25, 4.0
+"""Principal stretches of a diaphragm's cell beyond which it is crushed or burst: far outside the rubber's tests, and
+far inside the range of the law's series (`elements.rubber`: squares between 0.05 and 20)."""
 
-@dataclass(frozen=True)
-class Alarm:
-    """One reason to stop."""
-
-    sheet: str
-    node: tuple[int, int]
-    place_mm: tuple[float, float, float]
-    problem: str
-    cause: str
-    key: str
-
-    def __str__(self) -> str:
-        x, y, z = self.place_mm
-        return (
-            f"{self.problem} in {self.sheet} at node {self.node}, near x {x:.1f}, y {y:.1f}, z {z:.1f} mm; "
-            f"likely cause: {self.cause}; change {self.key}"
-        )
+SQUEEZED = 0.5
+"""Where something flies apart, a cell shorter than this is the likely cause."""
 
 
 def _bad_node(x: np.ndarray, v: np.ndarray, limit: float) -> tuple[int, int] | None:
@@ -48,14 +37,15 @@ def _bad_node(x: np.ndarray, v: np.ndarray, limit: float) -> tuple[int, int] | N
     return int(i), int(j)
 
 
-def fibre_stretch(x: np.ndarray, active: np.ndarray, spacing: tuple[float, float]) -> list[np.ndarray]:
-    """ln(lambda) of all bars of both families; 0 where a bar does not exist. x (3, n, m) [mm]."""
-    result = []
-    for axis, a in ((1, spacing[0]), (2, spacing[1])):
+def fibre_stretch(model: Model, x: np.ndarray, k: int) -> list[np.ndarray]:
+    """ln(lambda) of all bars of both families of ply k, x (3, n, m) [mm]; 0 where there is no bar, as across a slit."""
+    s, result = model.sheets[k], []
+    for axis, pool, a in ((1, model.bar1, float(s["a1"])), (2, model.bar2, float(s["a2"]))):
         d = np.diff(x, axis=axis)
-        strain = 0.5 * np.log((d * d).sum(axis=0) / a**2)
-        first = active[:-1] & active[1:] if axis == 1 else active[:, :-1] & active[:, 1:]
-        result.append(np.where(first, strain, 0.0))
+        width = sheet_scalars(model, pool, k)
+        there = (width[:-1] if axis == 1 else width[:, :-1]) > 0.0
+        square = np.where(there, (d * d).sum(axis=0), a * a)
+        result.append(0.5 * np.log(square / a**2))
     return result
 
 
@@ -70,36 +60,54 @@ def check_state(model: Model, state: State, names: list[str], start: np.ndarray)
         bad = _bad_node(x, v, limit)
         if bad is not None:
             i, j = bad
-            place = x[:, i, j] if np.isfinite(x[:, i, j]).all() else sheet_vectors(model, start, k)[:, i, j]
+            known = x if np.isfinite(x[:, i, j]).all() else sheet_vectors(model, start, k)
             speed = math.hypot(*v[:, i, j])
             problem = (
                 f"speed of {speed:.3g} mm/s (over {limit:.3g}, a quarter of an element a step)"
                 if math.isfinite(speed)
                 else "numbers that are not finite"
             )
+            if model.sheets[k]["kind"] == DIAPHRAGM and math.isfinite(speed):
+                crushed = _crushed(model, x, k, name, SQUEEZED)
+                if crushed is not None:
+                    return crushed
             cause = "a step too long for the contacts, or a fold that collapses"
             key = "solver.step_safety, solver.contact_stiffness_N_mm3 or the element sizes"
-            return Alarm(name, bad, _triple(place), problem, cause, key)
-        if model.sheets[k]["kind"] != DIAPHRAGM:
-            alarm = _torn(model, x, k, name)
-            if alarm is not None:
-                return alarm
+            return alarm_at(name, known, bad, problem, cause, key)
+        alarm = (_crushed if model.sheets[k]["kind"] == DIAPHRAGM else _torn)(model, x, k, name)
+        if alarm is not None:
+            return alarm
+    return None
+
+
+def _crushed(model: Model, x: np.ndarray, k: int, name: str, limit: float = LEAST_STRETCH) -> Alarm | None:
+    """Cells of diaphragm k that have collapsed, shorter than `limit`, or burst."""
+    a, n, m = int(model.sheets[k]["line"]), int(model.sheets[k]["rows"]), int(model.sheets[k]["cols"])
+    c11, c22, c12 = cell_metric(x, model.lines[a : a + n - 1], model.lines[a + n - 1 : a + n + m - 2])
+    mean, half = 0.5 * (c11 + c22), np.hypot(0.5 * (c11 - c22), c12)
+    least, most = np.sqrt(np.maximum(mean - half, 0.0)), np.sqrt(mean + half)
+    i, j = np.unravel_index(np.argmax(np.maximum(limit / (least + 1e-9), most / LARGEST_STRETCH)), least.shape)
+    if least[i, j] < limit:
+        problem = f"a cell crushed to {100 * least[i, j]:.0f} % of its length"
+        cause = "a fold tighter than its cells, or cells caught between the frame and the rising platform"
+        key = "diaphragms.element_mm or element_max_mm (smaller), or the order and the lift of process.stages"
+        return alarm_at(name, x, (int(i), int(j)), problem, cause, key)
+    if most[i, j] > LARGEST_STRETCH:
+        problem = f"a cell stretched {most[i, j]:.1f} times"
+        cause = "a span that the rubber cannot hold at this pressure, or a node caught on an edge of the tool"
+        key = "frame, diaphragms.thickness_mm or the pressures and the lift of process.stages"
+        return alarm_at(name, x, (int(i), int(j)), problem, cause, key)
     return None
 
 
 def _torn(model: Model, x: np.ndarray, k: int, name: str) -> Alarm | None:
-    s = model.sheets[k]
-    n, m = int(s["rows"]), int(s["cols"])
-    a = int(s["node"])
-    active = model.mass[a : a + n * m].reshape(n, m) > 0
-    for strain in fibre_stretch(x, active, (float(s["a1"]), float(s["a2"]))):
+    for strain in fibre_stretch(model, x, k):
         worst = np.unravel_index(np.argmax(np.abs(strain)), strain.shape)
         if abs(strain[worst]) > LARGEST_FIBRE_STRAIN:
-            i, j = int(worst[0]), int(worst[1])
             problem = f"fibre strain of {100 * strain[worst]:.1f} %"
             cause = "a node caught in a fold or on an edge of the tool"
             key = "plies.element_mm, diaphragms.element_mm or tool.fillet_mm"
-            return Alarm(name, (i, j), _triple(x[:, i, j]), problem, cause, key)
+            return alarm_at(name, x, (int(worst[0]), int(worst[1])), problem, cause, key)
     return None
 
 
@@ -109,7 +117,3 @@ def _smallest_size(model: Model, k: int) -> float:
         return float(min(s["a1"], s["a2"]))
     a, n, m = int(s["line"]), int(s["rows"]), int(s["cols"])
     return float(model.lines[a : a + n + m - 2].min())
-
-
-def _triple(place: np.ndarray) -> tuple[float, float, float]:
-    return float(place[0]), float(place[1]), float(place[2])

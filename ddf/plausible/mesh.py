@@ -20,6 +20,11 @@ from ddf.plausible.findings import Findings
 
 ELEMENTS_A_FOLD = 4.0  # elements over the length 2 pi r of a fold: fewer cannot bend round it
 ELEMENTS_A_FILLET = 0.5  # fillet radius over the diaphragm's element
+DEEP_MM, PRESSED_KPA = (
+    40.0,
+    20.0,
+)  # depth of the platform from which on, and vacuum at which, rubber bulges to the walls
+ELEMENTS_A_WALL = 5.0  # elements over that depth: with 2 to 3 of them the sheets flew apart in the frame's corners
 
 
 def fold_radius_mm(case: Case, path: LoadPath) -> float:
@@ -29,6 +34,16 @@ def fold_radius_mm(case: Case, path: LoadPath) -> float:
     rigidity = 2.0 * skin + sum(min(woven_material(case, ply.material).bending_rigidity_Nmm) for ply in case.plies)
     pressure = KPA * max(np.max(path.atmosphere - path.cavity), np.max(path.box - path.cavity))
     return math.inf if pressure <= 0.0 else (rigidity / pressure) ** (1.0 / 3.0)
+
+
+def wall_depth_mm(case: Case, path: LoadPath) -> float:
+    """Depth [mm] of the platform below the frame at which vacuum draws the sheets to the box's walls; 0: not deep."""
+    if case.tool is None:
+        return 0.0
+    height = case.tool.height_mm or case.tool.radius_mm or float(path.lift.max())
+    pressed = path.atmosphere - path.box > PRESSED_KPA
+    depth = float(np.max(np.where(pressed, height - path.lift, 0.0)))
+    return depth if depth > DEEP_MM else 0.0
 
 
 def examine_mesh(case: Case, path: LoadPath, found: Findings) -> None:
@@ -46,6 +61,13 @@ def examine_mesh(case: Case, path: LoadPath, found: Findings) -> None:
     if size > 2.0 * coarsest:
         problem = f"{size:g} is more than twice the plies' {coarsest:g}: wrinkles of the plies are smeared in contact"
         found.warn(("diaphragms", "element_mm"), problem, f"<= {2.0 * coarsest:g}")
+    depth = wall_depth_mm(case, path)
+    if depth > 0.0 and case.diaphragms.element_max_mm > depth / ELEMENTS_A_WALL:
+        problem = (
+            f"{case.diaphragms.element_max_mm:g} at the frame is too large for a box evacuated while its platform is "
+            f"{depth:g} mm below: sheets drawn to its walls cannot bend into the corners, and may fly apart there"
+        )
+        found.warn(("diaphragms", "element_max_mm"), problem, f"<= {depth / ELEMENTS_A_WALL:.3g}")
     tool = case.tool
     if tool is not None and tool.shape not in ("file", "hemisphere") and tool.fillet_mm < ELEMENTS_A_FILLET * size:
         problem = f"{tool.fillet_mm:g} is far below the diaphragm's element of {size:g}: edges press between its nodes"

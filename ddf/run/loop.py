@@ -10,8 +10,12 @@ import time as clock
 from collections.abc import Callable
 from logging import Logger
 
+import numpy as np
+
 from ddf.errors import UnstableError
+from ddf.model import State
 from ddf.monitors.energy import Energies, energies
+from ddf.monitors.passage import check_passage
 from ddf.monitors.stability import check_state
 from ddf.output.checkpoint import load_checkpoint, save_checkpoint
 from ddf.output.folder import RunFolder
@@ -25,6 +29,9 @@ from ddf.simulate import Simulation
 
 REPORT_EVERY_S = 1.0
 """Wall time between two progress reports [s]."""
+
+REMEMBERED = 4
+"""Checks between two copies of a good state: copying takes a few percent of the time of one check's steps."""
 
 
 class Runner:
@@ -51,6 +58,8 @@ class Runner:
         self.energy: Energies = energies(scene.model, scene.state)
         self.earlier_wall = 0.0
         self.history: HistoryWriter | None = None
+        self.good = State(*(array.copy() for array in scene.state))  # the last state that all guards have passed
+        self.good_frames, self.good_checks, self.saved_step = 0, 0, -1
 
     def resume(self) -> None:
         """Go back to the folder's checkpoint."""
@@ -59,6 +68,7 @@ class Runner:
         self.frames_done = int(extra["frames_done"])
         self.earlier_wall = float(extra["wall_s"])
         self.watch.seconds["steps"] = float(extra.get("steps_s", 0.0))
+        self.saved_step = self.sim.step
         self.sim.recount()
         self.energy = energies(self.scene.model, self.scene.state)
         self.history = HistoryWriter(self.out, self.names, self.sim.step)
@@ -85,6 +95,7 @@ class Runner:
             self._guard()
             with self.watch("output"):
                 self._observe(began)
+            self._remember()
             now = clock.perf_counter()
             if now - last_report > REPORT_EVERY_S or self.sim.step == self.steps:
                 last_report = now
@@ -109,11 +120,26 @@ class Runner:
         """Stop a run that has gone wrong."""
         sim = self.sim
         alarm = check_state(self.scene.model, self.scene.state, self.names, self.start_x)
+        alarm = alarm or check_passage(self.scene, sim.time)
         if alarm is not None:
             raise UnstableError(f"step {sim.step}, process time {sim.time:.6f} s: {alarm}", self._kept())
 
+    def _remember(self) -> None:
+        """Keep a copy of a state that has passed all guards, of every REMEMBERED-th check."""
+        self.good_checks += 1
+        if self.good_checks % REMEMBERED == 0:
+            for kept, array in zip(self.good, self.scene.state, strict=True):
+                np.copyto(kept, array)
+            self.good_frames = self.frames_done
+
+    def keep_last_good(self) -> None:
+        """Make the last good state the checkpoint, unless the one that is there is later."""
+        if self.good.clock[0] > self.saved_step:
+            extra = {"frames_done": self.good_frames, "wall_s": self.earlier_wall}
+            save_checkpoint(self.out, self.scene, self.good, extra)
+
     def _kept(self) -> str:
-        return f"output up to the last frame and checkpoint is in {self.out.path}"
+        return f"output up to the last frame, and the last good state as its checkpoint, are in {self.out.path}"
 
     def _observe(self, began: float) -> None:
         """History, energy guard and frames that are due."""
@@ -161,6 +187,7 @@ class Runner:
         steps = self.watch.seconds.get("steps", 0.0)
         extra = {"frames_done": self.frames_done, "wall_s": self.earlier_wall + wall, "steps_s": steps}
         save_checkpoint(self.out, self.scene, self.scene.state, extra)
+        self.saved_step = self.sim.step
 
     def _stage(self) -> str:
         path = self.scene.path

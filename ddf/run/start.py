@@ -107,6 +107,7 @@ def _run(runner: Runner, case_text: str, again: bool, interrupt: Interrupt) -> R
         runner.out.write_text("case.toml", case_text)
         reason = runner.loop(interrupt)
     except UnstableError as error:
+        runner.keep_last_good()
         write_info(runner, "unstable", str(error))
         raise
     finally:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from ddf.build import load_path
 from ddf.case import Case, Ply
+from ddf.case.process import Process, Stage
 from ddf.case.tool import TETRAHEDRA
 from ddf.errors import UsageError
+from ddf.plausible.mesh import ELEMENTS_A_WALL, wall_depth_mm
 from ddf.sweep.plan import Point
 
 PLY_FRICTION = (0.0, 0.14, 0.28, 0.42)  # 0.28 measured, 0 compared with it in section 3.4
@@ -31,7 +34,8 @@ def loading(case: Case) -> list[Point]:
     """Order of lifting the tool and evacuating the box (section 3.5): lift first, both at once, box first.
 
     Mass damping of the box's stage, which keeps the snap on the tool slow, goes with the snap: to the stage of
-    both, and with the box first to the lift too.
+    both, and with the box first to the lift too. Where the sheets are drawn to the walls of a deep box, cells at the
+    frame are small enough to bend into its corners.
     """
     stages = [stage.model_dump(exclude_none=True) for stage in case.process.stages or ()]
     lift = next((k for k, stage in enumerate(stages) if stage.get("tool_lift_mm")), None)
@@ -58,10 +62,16 @@ def loading(case: Case) -> list[Point]:
         "together": [*between, *together],
         "vacuum-then-lift": [*vacuum, *between, stages[lift] | damping],
     }
-    return [
-        Point(name, {"process.stages": [*stages[:first], *order, *stages[last + 1 :]]})
-        for name, order in orders.items()
-    ]
+    points = []
+    for name, order in orders.items():
+        changes: dict[str, Any] = {"process.stages": [*stages[:first], *order, *stages[last + 1 :]]}
+        process = Process(stages=tuple(Stage(**stage) for stage in changes["process.stages"]))
+        changed = case.model_copy(update={"process": process})
+        largest = wall_depth_mm(changed, load_path(changed)) / ELEMENTS_A_WALL
+        if 0.0 < largest < case.diaphragms.element_max_mm:
+            changes["diaphragms.element_max_mm"] = max(largest, case.diaphragms.element_mm)
+        points.append(Point(name, changes))
+    return points
 
 
 def layup(case: Case) -> list[Point]:

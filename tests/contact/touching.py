@@ -6,7 +6,7 @@ import numpy as np
 
 from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces, touched
 from ddf.contact.patch import patch_centres
-from ddf.contact.tool import FREE, PRESS, tool_forces
+from ddf.contact.tool import FREE, POINTS, PRESS, tool_forces
 from ddf.model import PAIR
 
 
@@ -100,7 +100,7 @@ class Tool:
         self.values = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32))
         self.law = (0.75, stiffness, damping, friction)
         self.dx, self.dy = (np.asarray(a, dtype=float) for a in cells)
-        self.anchors = np.full((self.dx.size + 1, self.dy.size + 1, 5, 3), FREE)
+        self.anchors = np.full((self.dx.size + 1, self.dy.size + 1, POINTS, 3), FREE)
         x, y = (0.5 * (np.pad(d, (1, 0)) + np.pad(d, (0, 1))) for d in (self.dx, self.dy))
         self.area = x[:, None] * y[None, :]
         self.out, self.work = np.zeros(4), 0.0

@@ -9,7 +9,8 @@ from click.testing import CliRunner
 import ddf.run.loop
 from ddf.cli import main
 from ddf.model import sheet_vectors
-from ddf.monitors.stability import Alarm, check_state
+from ddf.monitors.alarm import Alarm
+from ddf.monitors.stability import check_state, fibre_stretch
 
 COARSE = ("plies.0.element_mm=25", "diaphragms.element_mm=30")
 
@@ -57,6 +58,36 @@ def test_a_torn_fibre_is_found(scene):
     assert "fibre strain" in alarm.problem
 
 
+@pytest.mark.parametrize(("factor", "said"), [(0.1, "crushed to"), (6.0, "stretched")])
+def test_a_cell_of_rubber_that_collapses_or_bursts_is_found(scene, factor, said):
+    x = sheet_vectors(scene.model, scene.state.x, 2)
+    x[0, 6:] += (factor - 1.0) * (x[0, 6] - x[0, 5])  # all cells between rows 5 and 6
+    alarm = _alarm(scene)
+    assert alarm.sheet == "top-diaphragm"
+    assert alarm.node[0] == 5
+    assert said in alarm.problem
+
+
+def test_what_flies_out_of_a_crushed_cell_is_laid_to_the_cell(scene):
+    x, v = (sheet_vectors(scene.model, pool, 2) for pool in (scene.state.x, scene.state.v))
+    x[0, 6:] -= 0.6 * (x[0, 6] - x[0, 5])
+    assert _alarm(scene) is None
+    v[2, 6, 3] = 1e7
+    alarm = _alarm(scene)
+    assert alarm.node[0] == 5
+    assert "crushed to 40 %" in alarm.problem
+
+
+def test_a_slit_that_opens_is_no_torn_fibre(make_scene):
+    scene = make_scene("flat-stack", *COARSE, "plies.0.slits_mm=[[[5.0, -175.0], [5.0, 175.0]]]")
+    x = sheet_vectors(scene.model, scene.state.x, 1)
+    x[0, x[0] > 5.0] += 20.0
+    assert _alarm(scene) is None
+    assert max(np.abs(part).max() for part in fibre_stretch(scene.model, x, 1)) < 1e-9
+    x[0, -1, 3] += 5.0
+    assert "fibre strain" in _alarm(scene).problem
+
+
 def test_a_run_that_goes_wrong_ends_with_3_and_keeps_its_output(tmp_path, monkeypatch):
     """By a guard that cries at once, and by an energy error beyond the case's limit."""
     settings = [part for item in (*COARSE, "process.stages.1.duration_s=0.001") for part in ("--set", item)]
@@ -67,7 +98,7 @@ def test_a_run_that_goes_wrong_ends_with_3_and_keeps_its_output(tmp_path, monkey
     assert tight.exit_code == 3, tight.output
     assert "energy_error_limit_percent" in tight.output
     alarm = Alarm("ply-1", (1, 2), (0.0, 0.0, 0.0), "fibre strain of 50 %", "a fold", "plies.element_mm")
-    monkeypatch.setattr(ddf.run.loop, "check_state", lambda *_: alarm)
+    monkeypatch.setattr(ddf.run.loop, "check_state", lambda _, state, *__: alarm if state.clock[0] > 300 else None)
     wrong = CliRunner().invoke(main, [*command, "-o", str(tmp_path / "wrong")])
     assert wrong.exit_code == 3
     assert "change plies.element_mm" in wrong.output
@@ -77,3 +108,5 @@ def test_a_run_that_goes_wrong_ends_with_3_and_keeps_its_output(tmp_path, monkey
         assert info["message"]
         assert (tmp_path / name / "checkpoint.npz").is_file()
         assert "ERROR" in (tmp_path / name / "log.txt").read_text()
+    with np.load(tmp_path / "wrong" / "checkpoint.npz") as kept:
+        assert 100 <= kept["step"] <= 300  # the last good state, not the start

@@ -40,6 +40,12 @@ FAULTS = {
 WARNINGS = {
     "coarse ply": (COARSE, ["plies.0.element_mm=10"], "plies.0.element_mm", "cannot resolve"),
     "coarse diaphragm": (COARSE, ["diaphragms.element_mm=15"], "diaphragms.element_mm", "smeared"),
+    "vacuum over a deep box": (
+        COARSE,
+        ["process.stages.0.box_pressure_kPa=0.0"],
+        "diaphragms.element_max_mm",
+        "platform is 82 mm below",
+    ),
     "sharp tool": (COARSE, ["tool.fillet_mm=0.5"], "tool.fillet_mm", "far below"),
     "fast tool": (COARSE, [LIFT + "duration_s=0.005"], LIFT + "tool_lift_mm", "moves at"),
     "lift past the tool": (COARSE, [LIFT + "tool_lift_mm=150"], LIFT + "tool_lift_mm", "far above the frame"),

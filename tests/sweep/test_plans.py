@@ -140,6 +140,7 @@ def test_ready_made_sweeps_change_what_they_say():
     assert [s.name for s in box_first] == ["evacuate-cavity", "draw-down", "evacuate-box", "lift", "hold"]
     assert [s.mass_damping_1_s for s in lift_first] == [None, None, 100.0, 100.0, 300.0]
     assert [s.mass_damping_1_s for s in box_first] == [None, 100.0, 100.0, 100.0, 300.0]
+    assert [case.diaphragms.element_max_mm for case in cases["loading"]] == pytest.approx([30.0, 30.0, 82.0 / 5.0])
     assert len(together) == 4
     assert [s.tool_lift_mm for s in together[1:3]] == pytest.approx([82.0 * 7 / 11, 82.0])
     assert [s.box_pressure_kPa for s in together[1:3]] == [94.0, 0.0]
