@@ -11,6 +11,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 
+#: sine of the angle below which an edge lies in a triangle's plane and does not pass it (frames hold 32-bit places)
+FLATTEST = 1e-6
+
+
 def crossings(points, quads, other=None, other_quads=None):
     """Places (k, 3) where edges of a sheet pass through triangles of another or itself; points (n, 3), quads (q, 4)."""
     own = other is None
@@ -71,7 +75,8 @@ def _through(segments, corners):
     det = (u * h).sum(axis=1)
     s = start - corners[:, 0]
     q = np.cross(s, u)
-    along = np.where(np.abs(det) < 1e-14, np.inf, det)
+    size = np.linalg.norm(d, axis=1) * np.linalg.norm(np.cross(u, v), axis=1)
+    along = np.where(np.abs(det) < FLATTEST * size, np.inf, det)
     r, t, w = ((a * b).sum(axis=1) / along for a, b in ((s, h), (d, q), (v, q)))
     meets = np.isfinite(along) & (r >= 0.0) & (t >= 0.0) & (r + t <= 1.0) & (w >= 0.0) & (w <= 1.0)
     return start[meets] + w[meets, None] * d[meets]
