@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-
 #: sine of the angle below which an edge lies in a triangle's plane and does not pass it (frames hold 32-bit places)
 FLATTEST = 1e-6
 
