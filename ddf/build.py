@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import distance_transform_cdt, distance_transform_edt
 
 from ddf.case import Case, hyperelastic_material, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
@@ -334,7 +334,7 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
         if s["kind"] != DIAPHRAGM:
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
-            values["cover"] = edge_cover(values["cell"])
+            values["cover"] = ply_cover(values["cell"])
             span = np.asarray(ply.row_span)
             held, exists = np.zeros((n, m), bool), ply.active
         else:
@@ -364,6 +364,19 @@ def _pools(case: Case, stack: _Stack, sheets: np.ndarray, masses: list[float]) -
     pools["weight"] = np.concatenate(weights)
     pools["row_first"] = np.array(firsts, dtype=np.int64)
     return pools
+
+
+def ply_cover(cell: FloatArray) -> FloatArray:
+    """Depth of a ply's nodes inside its edges, in cells, less one; cell (n, m) areas.
+
+    Contact takes what is interpolated of it between 0 and 1 (`contact.layers`): none up to a cell from the edge,
+    all from two cells on. Nearer to the edge the smooth surface is extended from a patch beside, and along an edge that
+    runs across the grid in steps that patch changes, and the surface jumps: contact there gave a stack of four plies
+    5 % of its work out of nothing.
+    """
+    inside = np.pad(edge_cover(cell) > 0.0, 1)
+    depth: FloatArray = distance_transform_cdt(inside, metric="chessboard")[1:-1, 1:-1] - 1.0
+    return depth
 
 
 def _lattice(ply: PlyMesh) -> dict[str, FloatArray]:
