@@ -24,8 +24,11 @@ CHECKS = {
 }
 
 
-def judged_run(table: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Run a case and return what there is to say about it; `end` is settled, moving, unbalanced, stopped or refused."""
+def judged_run(table: dict[str, Any], folder: Path, *, frames: bool = True) -> dict[str, Any]:
+    """Run a case and return what there is to say about it; `end` is settled, moving, unbalanced, stopped or refused.
+
+    With `frames` the crossings of sheets in every frame too.
+    """
     row: dict[str, Any] = {"title": table.get("title", "")}
     began = time.perf_counter()
     try:
@@ -44,6 +47,8 @@ def judged_run(table: dict[str, Any], folder: Path) -> dict[str, Any]:
         moving, unbalanced = row["kinetic_percent"] > REST_PERCENT, row["gross_percent"] > BALANCE_PERCENT
         row["end"] = "moving" if moving else "unbalanced" if unbalanced else "settled"
     row |= {"steps": run.info["step"], "wall_s": round(time.perf_counter() - began, 1)}
+    if not frames:
+        return row
     sheets = list(run.info["mesh"]["sheets"])
     return row | {"crossings": crossings_by_time(run, sheets), "last_frame": round(run.frames(sheets[0])[-1][0], 4)}
 

@@ -4,24 +4,13 @@ import pytest
 from judge import judged_run
 from random_scenes import random_case
 
-DOZEN = (
-    1,
-    2,
-    17,
-    22,
-    28,
-    32,
-    34,
-    38,
-    39,
-    43,
-    46,
-    19,
-)  # of all tools and most orders of loading, 1 to 4 plies; the quickest
+DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
+"""Among the quickest: all tools, fillets down to none, 1 to 4 plies, most orders of loading."""
 
 
 @pytest.mark.parametrize("number", DOZEN)
 def test_scene_comes_to_rest(number, tmp_path):
-    row = judged_run(random_case(number), tmp_path / "run")
+    row = judged_run(random_case(number), tmp_path / "run", frames=False)
     assert row["end"] == "settled", row
+    assert row["strain_percent"] < 0.3
     assert row["ply_in_tool_mm"] < 0.5

@@ -8,7 +8,6 @@ ELEMENT = 5.5  # mm
 TOOLS = [
     {"shape": "regular-tetrahedron", "height_mm": 30.0, "fillet_mm": 1.0},
     {"shape": "box", "length_mm": 50.0, "width_mm": 36.0, "height_mm": 18.0, "fillet_mm": 0.5},
-    {"shape": "box", "length_mm": 50.0, "width_mm": 36.0, "height_mm": 18.0, "fillet_mm": 0.0},
 ]
 
 
@@ -29,8 +28,7 @@ def test_sheets_settle_over_sharp_edges(tool, tmp_path):
         ]},
         "output": {"frames_per_stage": 2, "pictures": False},
     }  # fmt: skip
-    row = judged_run(table, tmp_path / "run")
-    print(row)
+    row = judged_run(table, tmp_path / "run", frames=False)
     assert row["end"] == "settled", row
     assert row["ply_in_tool_mm"] < 0.5
     assert row["strain_percent"] < 0.3
