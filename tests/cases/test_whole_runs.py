@@ -23,6 +23,7 @@ from ddf.run import run_case
 SMALL = [
     "plies.0.element_mm=12.5",
     "diaphragms.element_mm=14",
+    "tool.fillet_mm=15",
     "process.stages.0.duration_s=0.004",
     "process.stages.1.duration_s=0.012",
     "process.stages.2.duration_s=0.004",
