@@ -29,7 +29,7 @@ LOADED_S = 20.0  # to load compiled kernels, on a busy machine: compiling takes 
 TIMEOUT_S = 1200
 GMSH_LIBRARIES = ("libGLU.so", "libXrender.so", "libXcursor.so", "libXft.so", "libXinerama.so")
 SMALL = (
-    "plies.0.element_mm=12.5", "diaphragms.element_mm=14", "process.stages.0.duration_s=0.004",
+    "plies.0.element_mm=12.5", "diaphragms.element_mm=14", "tool.fillet_mm=15", "process.stages.0.duration_s=0.004",
     "process.stages.1.duration_s=0.012", "process.stages.2.duration_s=0.004", "process.stages.3.duration_s=0.002",
     "process.stages.4.duration_s=0.002", "output.frames_per_stage=1", "solver.energy_error_limit_percent=100",
 )  # fmt: skip

@@ -27,7 +27,7 @@ from ddf.output.vtu import read_pvd
 ROOT = Path(__file__).resolve().parent.parent
 CASE = ROOT / "cases/tetrahedron-0-90-coarse.toml"
 SMALL = (
-    "plies.0.element_mm=12.5", "diaphragms.element_mm=14", "process.stages.0.duration_s=0.004",
+    "plies.0.element_mm=12.5", "diaphragms.element_mm=14", "tool.fillet_mm=15", "process.stages.0.duration_s=0.004",
     "process.stages.1.duration_s=0.012", "process.stages.2.duration_s=0.004", "process.stages.3.duration_s=0.002",
     "output.frames_per_stage=6", "solver.energy_error_limit_percent=100", "output.pictures=false",
     "output.checkpoint_interval_s=0.1", "output.history_interval_steps=50",

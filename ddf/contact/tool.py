@@ -20,7 +20,7 @@ entries are positive), so the tool, however stiff, sets no limit to the step: wi
 leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
 forces is dissipation, booked with the mid-step velocity.
 
-Where all four corners of the sheet are held, as in a frame, the box has walls: vertical planes through the frame's
+Where the sheet is held all around, as in a frame, the box has walls: vertical planes through the frame's
 edges that keep nodes inside, without friction. A vacuum of 0.1 MPa over a box 82 mm deep else blows the rubber out
 under the frame until it bursts at the corners. And while the platform stands lower than the frame, by over half a
 thickness, friction on it does not hold the nodes next to the frame, nor those nearer to the walls than it is deep: as
@@ -169,9 +169,11 @@ def _dual(d, j):
 
 @njit(inline="always")
 def _framed(inverse):
-    """Whether the four corners of a sheet are held."""
+    """Whether a sheet is held all around: at its corners and the middles of its edges."""
     n, m = inverse.shape[0] - 1, inverse.shape[1] - 1
-    return inverse[0, 0] + inverse[n, 0] + inverse[0, m] + inverse[n, m] == 0.0
+    i, j = n // 2, m // 2
+    corners = inverse[0, 0] + inverse[n, 0] + inverse[0, m] + inverse[n, m]
+    return corners + inverse[i, 0] + inverse[i, m] + inverse[0, j] + inverse[n, j] == 0.0
 
 
 @njit(inline="always")

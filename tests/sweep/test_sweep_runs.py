@@ -26,7 +26,7 @@ radius_mm = 60.0
 """
 
 FORMING = {
-    "plies.0.element_mm": 12.5, "diaphragms.element_mm": 14, "process.stages.0.duration_s": 0.004,
+    "plies.0.element_mm": 12.5, "diaphragms.element_mm": 14, "tool.fillet_mm": 15, "process.stages.0.duration_s": 0.004,
     "process.stages.1.duration_s": 0.02, "process.stages.2.duration_s": 0.004, "process.stages.3.duration_s": 0.002,
     "output.frames_per_stage": 2, "solver.energy_error_limit_percent": 100, "output.checkpoint_interval_s": 0.001,
     "output.pictures": "false",
