@@ -13,7 +13,10 @@ from ddf.commands.common import CASE, INTERRUPTED, MISSED, SET, SOME_FAILED, end
 
 @click.group()
 def study() -> None:
-    """Study the method itself: speed against accuracy, and the limits of stability."""
+    """Study the method itself: speed against accuracy, and the limits of stability.
+
+    Example: ddf study stability --quick
+    """
 
 
 @study.command("speed-accuracy")
