@@ -82,7 +82,6 @@ def build_scene(case: Case) -> Scene:
     pairs, exposed, places = _pairs(case, stack, masses, sheets)
     blocks = row_blocks(sheets)
     friction, solver = case.friction, case.solver
-    on_tool = solver.tool_contact_stiffness_N_mm3
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
     model = Model(
         sheets=sheets, blocks=blocks, pairs=pairs, **pools,
@@ -92,8 +91,10 @@ def build_scene(case: Case) -> Scene:
         tool_origin=np.zeros(3) if tool_field is None else np.asarray(tool_field.origin, dtype=float),
         tool_spacing=1.0 if tool_field is None else float(tool_field.spacing),
         tool_sheet=-1 if tool_field is None else 0, tool_offset=0.5 * stack.thickness[0],
-        tool_stiffness=on_tool,
-        tool_damping=timestep.contact_damping(solver.contact_damping, on_tool, masses[0], math.inf),
+        tool_stiffness=solver.tool_contact_stiffness_N_mm3,
+        tool_damping=timestep.contact_damping(
+            solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
+        ),
         tool_mass=masses[0], tool_friction=friction.diaphragm_tool,
         gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
