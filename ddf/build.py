@@ -95,7 +95,7 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_mass=masses[0], tool_friction=friction.diaphragm_tool,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, tool_boxed=True,
         gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
     state = state_at_rest(model, _flat_positions(stack), places)

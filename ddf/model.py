@@ -36,6 +36,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from ddf.jit import INLINE
+
 #: kinds of sheets; a SHELL_PLY is a ply of shell-membrane cells, a PLY one of the lattice
 PLY, DIAPHRAGM, SHELL_PLY = 0, 1, 2
 
@@ -151,6 +153,7 @@ class Model(NamedTuple):
     tool_damping: float
     tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
+    tool_boxed: bool  # whether the box's walls stand under that sheet's edges, which run along x and y
     gravity: np.ndarray  # (3,) acceleration that all (scaled) masses feel [mm/s2]
     dt: float
 
@@ -176,28 +179,28 @@ class State(NamedTuple):
     clock: np.ndarray  # (2,): step number, time [s]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def vectors(pool, sheet):
     """Sheet's slice of a vector pool as (3, rows, cols)."""
     n = sheet.rows * sheet.cols
     return pool[3 * sheet.node : 3 * (sheet.node + n)].reshape((3, sheet.rows, sheet.cols))
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def scalars(pool, sheet):
     """Sheet's slice of a scalar pool as (rows, cols)."""
     n = sheet.rows * sheet.cols
     return pool[sheet.node : sheet.node + n].reshape((sheet.rows, sheet.cols))
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def shell_fields(pool, sheet, count):
     """Sheet's slice of a pool of `count` numbers a node of shell plies as (count, rows, cols)."""
     n = sheet.rows * sheet.cols
     return pool[count * sheet.shell : count * (sheet.shell + n)].reshape((count, sheet.rows, sheet.cols))
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def fours(pool, sheet):
     """Sheet's slice of a pool of four numbers a node as (4, rows, cols)."""
     n = sheet.rows * sheet.cols

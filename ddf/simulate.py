@@ -7,6 +7,7 @@ import numpy as np
 from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.self_search import SelfContact
 from ddf.contact.tool import PRESS
+from ddf.dynamics.handle import held
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
 from ddf.dynamics.team import Team
 from ddf.elements import bending, shear, squeeze
@@ -63,6 +64,7 @@ class Simulation:
         self.work = make_work(scene.model, threads)
         self._followed = np.where(scene.model.exposed, 0, -1).astype(np.int8)
         self._self_contact = SelfContact(self.model, self.state, self.work.packed, self.work.rest, self.work.idle)
+        self.handles = held(self.model), held(self.state), held(self.work)
         self._volumes = self._swept()
 
     @property
@@ -86,6 +88,10 @@ class Simulation:
         """Take the state as it is now (after it was read from a checkpoint) as the start of the next batch."""
         self._volumes = self._swept()
 
+    def seek(self, way: float) -> None:
+        """Look for nodes that meet their own sheet, within the way that sheets can go in the next batch [mm]."""
+        self._self_contact.seek(way)
+
     def fastest(self, k: int) -> float:
         """Largest speed in sheet k [mm/s]."""
         return float(np.sqrt(largest_square(sheet_vectors(self.model, self.state.v, k))))
@@ -105,8 +111,8 @@ class Simulation:
         self.work.sleep[:] = 0
         self.work.rest[:] = self._followed
         reach = self._reach_speed(schedule) * model.dt
-        self._self_contact.seek(reach * steps)
-        self.team.run(advance, model, state, self.work, schedule, self.step, reach)
+        self.seek(reach * steps)
+        self.team.run(advance, *self.handles, schedule, self.step, reach)
         state.clock[0] += steps
         state.clock[1] = state.clock[0] * model.dt
         if steps:

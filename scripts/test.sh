@@ -8,4 +8,5 @@ ruff format --check ddf tests scripts
 ruff check ddf tests scripts
 mypy
 lint-imports
-python -m pytest "$@"
+python -c "import ddf.kernel_cache as cache; cache.use_cache(); cache.warm_kernels()"
+python -m pytest -n 2 --dist loadfile "$@"

@@ -87,6 +87,7 @@ def _solve(
     problems: tuple[str, ...], threads: int, output: Path, quick: bool, element_mm: float | None, formulation: str,
     case: Path | None,
 ) -> None:  # fmt: skip
+    from ddf.kernel_cache import warm_kernels
     from ddf.verify.problem import Options
     from ddf.verify.registry import choose_problems
     from ddf.verify.report import text_table
@@ -97,6 +98,7 @@ def _solve(
     if case is not None:
         options = with_case_materials(options, case)
     click.echo(f"{len(chosen)} problems; the kernels are compiled first where they are new ...", err=True)
+    warm_kernels()
     missed = []
     for outcome in solve_all(chosen, options, output, lambda problem: click.echo(f"{problem.name} ...", err=True)):
         click.echo(f"{outcome.problem.name}: {outcome.problem.title} ({outcome.wall_s:.1f} s)")

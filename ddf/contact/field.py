@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.jit import INLINE
+
 OUTSIDE = 1.0e3
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def sample(values, origin, spacing, x, y, z):
     """Signed distance [mm] and unit gradient at (x, y, z); values (nx, ny, nz, 4): d and its gradient.
 

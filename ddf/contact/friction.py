@@ -10,19 +10,21 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.jit import INLINE
+
 TANGENTIAL = 0.3
 """Stiffness and damping of the friction spring over those of the normal one. At 1 sticking contacts, a
 thickness off the mid-surfaces, chattered at the step's limit. With the default penalty of 1 N/mm3, 0.3 lets
 a contact under vacuum give about 0.2 mm before it slides."""
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def coulomb(trial, limit):
     """Share of the trial force [N] that friction can carry: min(1, limit / trial)."""
     return limit / trial if trial > limit else 1.0
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def length(x, y, z):
     """Length of a vector."""
     return np.sqrt(x * x + y * y + z * z)

@@ -21,7 +21,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 TILE = 4
 FAR = 1e30

@@ -19,19 +19,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ddf.contact.quad import add_scaled, load, scaled, store
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 
 FOUR, EIGHT = np.uint64(4), np.uint64(8)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def weights(t):
     """The three weights and their derivatives at t."""
     p, q = 0.5 - t, 0.5 + t
     return 0.5 * p * p, 0.75 - t * t, 0.5 * q * q, -p, -2.0 * t, q
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _mix(b0, b1, b2, y0, y1, y2):
     """b0 y0 + b1 y1 + b2 y2."""
     return add_scaled(b0, y0, add_scaled(b1, y1, scaled(b2, y2)))

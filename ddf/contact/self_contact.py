@@ -19,14 +19,14 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.layers import UNKNOWN
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 from ddf.model import DIAPHRAGM
 
 CELLS = 2.0
 """Least way along the sheet in cells: a node is no part of the surface that it touches."""
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def apart(sheet, lines, i, j, u, v):
     """Way along the reference sheet from node (i, j) to a place, in the cell sizes there [mm], and in cells."""
     if sheet.kind == DIAPHRAGM:
@@ -38,7 +38,7 @@ def apart(sheet, lines, i, j, u, v):
     return np.sqrt(p * p * a * a + q * q * b * b), max(abs(p), abs(q))
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def far(sheet, lines, i, j, u, v, share):
     """Whether a place lies beyond `share` of what the struts take care of."""
     way, cells = apart(sheet, lines, i, j, u, v)

@@ -20,7 +20,7 @@ from ddf.contact.normal_cones import STACK, TILE, begin, find_boxes, find_cones,
 from ddf.contact.patch import interpolate, weights
 from ddf.contact.quad import part
 from ddf.contact.self_contact import far
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 from ddf.model import Model, State, sheet_scalars, sheet_vectors
 
 WIDEST = math.radians(60.0)

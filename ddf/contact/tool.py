@@ -20,12 +20,12 @@ entries are positive), so the tool, however stiff, sets no limit to the step: wi
 leapfrog's limit  K_e dt^2 < 4 m  becomes  K_e dt^2 < 4 m + dt^2 K. What the tensor takes from F and the viscous
 forces is dissipation, booked with the mid-step velocity.
 
-Where the sheet is held all around, as in a frame, the box has walls: vertical planes through the frame's
-edges that keep nodes inside, without friction. A vacuum of 0.1 MPa over a box 82 mm deep else blows the rubber out
-under the frame until it bursts at the corners. And while the platform stands lower than the frame, by over half a
-thickness, friction on it does not hold the nodes next to the frame, nor those nearer to the walls than it is deep: as
-it comes up the sheet rolls off the walls on this rim, and cells that stick there are crushed between frame and platform
-like struts, on which they press with more than the sheet's pressure.
+Under a sheet in a frame the box has walls: vertical planes through the frame's edges that keep nodes inside, without
+friction. A vacuum of 0.1 MPa over a box 82 mm deep else blows the rubber out under the frame until it bursts at the
+corners. And while the platform stands lower than the frame, by over half a thickness, friction on it does not hold the
+nodes next to the frame, nor those nearer to the walls than it is deep: as it comes up the sheet rolls off the walls on
+this rim, and cells that stick there are crushed between frame and platform like struts, on which they press with more
+than the sheet's pressure.
 
 Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
 to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not
@@ -38,7 +38,7 @@ from numba import njit
 
 from ddf.contact.field import sample
 from ddf.contact.friction import TANGENTIAL, coulomb, length
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 
 FREE = 1.0e30
 HARD, HARDENING = 0.1, 3.0
@@ -52,7 +52,7 @@ LONGEST_SLEEP = 16
 PRESS = 12
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _spring(k, depth):
     """Force of the penalty at a depth, and what it stores."""
     excess = max(0.0, depth - HARD)
@@ -60,7 +60,7 @@ def _spring(k, depth):
     return force, 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _held(p, v, dt, anchor, nx, ny, nz):
     """Stretches of the friction spring along the surface, now and in the last step, multiplied."""
     x, y, z = p[0] - anchor[0], p[1] - anchor[1], p[2] - anchor[2]
@@ -68,7 +68,7 @@ def _held(p, v, dt, anchor, nx, ny, nz):
     return x * ox + y * oy + z * oz - (x * nx + y * ny + z * nz) * (ox * nx + oy * ny + oz * nz)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     """What one contact point does, into give (PRESS,); returns whether it touches.
 
@@ -140,20 +140,20 @@ def _rare_point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     return _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _put(row, weight, give):
     """Add a point's share to a node's row of press (PRESS,)."""
     for c in range(PRESS):
         row[c] += weight * give[c]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _mean(a, c, i, k, j, l, r, s):
     """Component c of a (3, n, m) at the place (r, s) between rows i, k and columns j, l."""
     return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, l]) + r * ((1 - s) * a[c, k, j] + s * a[c, k, l])
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _push(f, inverse, c, i, k, j, l, r, s):
     """The same of f / m."""
     return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, l] * inverse[i, l]) + r * (
@@ -161,22 +161,13 @@ def _push(f, inverse, c, i, k, j, l, r, s):
     )
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _dual(d, j):
     """Length that line j of a grid stands for, from its cells' sizes d."""
     return 0.5 * ((d[j - 1] if j > 0 else 0.0) + (d[j] if j < d.shape[0] else 0.0))
 
 
-@njit(inline="always")
-def _framed(inverse):
-    """Whether a sheet is held all around: at its corners and the middles of its edges."""
-    n, m = inverse.shape[0] - 1, inverse.shape[1] - 1
-    i, j = n // 2, m // 2
-    corners = inverse[0, 0] + inverse[n, 0] + inverse[0, m] + inverse[n, m]
-    return corners + inverse[i, 0] + inverse[i, m] + inverse[0, j] + inverse[n, j] == 0.0
-
-
-@njit(inline="always")
+@njit(**INLINE)
 def _from_wall(x, i, j):
     """Distance of node (i, j) from the nearest wall [mm]."""
     n, m = x.shape[1] - 1, x.shape[2] - 1
@@ -207,16 +198,17 @@ def _walls(x, v, f, inverse, area, k, c, dt, i, j, anchors, out, give, press, pr
 
 @njit(**FAST)
 def tool_forces(
-    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, motion, reach, dt, anchors,
-    sleep, low, high, out, give,
+    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, boxed, motion, reach, dt,
+    anchors, sleep, low, high, out, give,
 ):  # fmt: skip
     """Gather what the tool does to nodes and cells of rows low..high-1; returns its work [N mm], and if carry is used.
 
     x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
     pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
-    law = (offset, stiffness, damping, friction); motion = (z, speed) of the tool's base; reach: way that a point can go
-    in a step [mm]; anchors (n, m, POINTS, 3): of the node on the platform, then of the node, the
-    middles of the edges along columns and rows, and the centre on the tool, of the node on the walls across x and y;
+    law = (offset, stiffness, damping, friction); boxed: whether walls stand under the sheet's edges; motion = (z,
+    speed) of the tool's base; reach: way that a point can go in a step [mm]; anchors (n, m, POINTS, 3): of the node
+    on the platform, then of the node, the middles of the edges along columns and rows, and the centre on the tool, of
+    the node on the walls across x and y;
     sleep (n, m) int16; out (4,) as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
@@ -224,11 +216,10 @@ def tool_forces(
     n, m = x.shape[1], x.shape[2]
     work = 0.0
     carried = False
-    framed = _framed(inverse)
-    depth = x[2, 0, 0] - offset - z if framed else 0.0
+    depth = x[2, 0, 0] - offset - z if boxed else 0.0
     for i in range(low, high):
         for j in range(m):
-            if framed and _from_wall(x, i, j) < reach:  # one that touched a step ago is no farther
+            if boxed and _from_wall(x, i, j) < reach:  # one that touched a step ago is no farther
                 _walls(x, v, f, inverse, area, stiffness, damping, dt, i, j, anchors, out, give, press, pressed)
             if x[2, i, j] - z >= offset and anchors[i, j, 0, 0] >= FREE:
                 continue
@@ -300,7 +291,7 @@ def tool_forces(
     return work, carried
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _along(row, x, y, z):
     """The tool's force on a node, with what the tensor took (x, y, z), along the force of its springs [N]."""
     a, b, c = row[0] - row[9], row[1] - row[10], row[2] - row[11]

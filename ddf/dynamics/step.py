@@ -42,7 +42,8 @@ from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.shell_membrane.history import HISTORY
 from ddf.elements.shell_membrane.rotations import turn_row
 from ddf.elements.squeeze import SHARE, squeeze_forces
-from ddf.elements.tension import FAST, LINES, pull_kept, pull_lines, pull_rows
+from ddf.elements.tension import LINES, pull_kept, pull_lines, pull_rows
+from ddf.jit import FAST, INLINE
 from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
     CONTACT_DAMPING,
@@ -191,7 +192,7 @@ def _collect_shell(state, sheet, carry, low, b):
             pull[c, low, j] += carry[3 + c, b - 1, j]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _first_block(model, k):
     """First block of sheet k."""
     b = 0
@@ -200,7 +201,7 @@ def _first_block(model, k):
     return b
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _buffer(work, model, pair, index):
     """Master force buffer and row spans of a pair for its slave's block number `index`."""
     master = model.sheets[pair.master]
@@ -211,7 +212,7 @@ def _buffer(work, model, pair, index):
     return buffer, span
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _packed(pool, sheet):
     """Sheet's slice of a pool of quads as (rows, cols, 4)."""
     n = sheet.rows * sheet.cols
@@ -282,8 +283,9 @@ def _tool(model, state, work, member, row, b, dt, reach):
     done, work.carried[b] = tool_forces(
         vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.inverse_mass, sheet),
         work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
-        model.tool, model.tool_origin, model.tool_spacing, law, (row[TOOL_Z], row[TOOL_SPEED]), reach, dt,
-        state.tool_anchor, work.sleep, block.low, block.high, out, work.give[member],
+        model.tool, model.tool_origin, model.tool_spacing, law, model.tool_boxed,
+        (row[TOOL_Z], row[TOOL_SPEED]), reach, dt, state.tool_anchor, work.sleep, block.low, block.high, out,
+        work.give[member],
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 TILE = 128
 """Nodes of a row that go through the passes together: their scratch stays in the first cache."""

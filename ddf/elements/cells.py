@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 TILE = 128
 """Cells of a row that go through the passes together."""

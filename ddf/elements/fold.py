@@ -24,10 +24,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def least_chord(s, radius):
     """Least distance of the outer nodes of two cells, s long together, at a fold's least radius [mm]."""
     q = 0.5 * s / radius

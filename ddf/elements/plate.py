@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 
 
 @njit(**FAST)
@@ -65,7 +65,7 @@ def _gather_row(f, mx_m, mx_0, mx_p, my, lo2, lo, hi, hi2, dy):
         f[j] -= 2.0 / (dy[j - 1] * (dy[j - 2] + dy[j - 1])) * my[j - 1]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _size(dx, i):
     return dx[i] if 0 <= i < dx.shape[0] else 0.0
 

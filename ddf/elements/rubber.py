@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST, INLINE
 
 
 @njit(**FAST)
@@ -45,7 +45,7 @@ def _metric(a1, a2, dx, dy, c11, c22, c12):
         c12[j] = (a1[0, j] * a2[0, j] + a1[1, j] * a2[1, j] + a1[2, j] * a2[2, j]) * ix * iy
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _ln(c):
     """Ln c from the eighth root: ln c = 16 atanh((y - 1)/(y + 1)), y = c^(1/8)."""
     y = np.sqrt(np.sqrt(np.sqrt(c)))
@@ -54,7 +54,7 @@ def _ln(c):
     return 16.0 * z * (1 + w * (1 / 3 + w * (1 / 5 + w * (1 / 7 + w * (1 / 9 + w * (1 / 11 + w / 13))))))
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def _exp(y):
     """Exp y = (exp y/32)^32, |y| < 10."""
     t = y * (1.0 / 32.0)

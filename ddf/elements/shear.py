@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 # fields of `w`, the scratch of a tile
 R1, R2, S, INTERVAL, PART, SLOPE = (np.uint64(k * TILE) for k in range(6))

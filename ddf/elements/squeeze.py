@@ -29,7 +29,7 @@ import numpy as np
 from numba import njit
 
 from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 SHARE = 0.02
 """Of a step's contact force in its running mean."""

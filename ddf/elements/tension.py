@@ -42,12 +42,10 @@ lost at the rate dt T/(m R^2) for motions of size R (a few per cent a second in 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
 
-FAST: dict[str, Any] = {"fastmath": True, "error_model": "numpy", "boundscheck": False, "cache": True, "nogil": True}
+from ddf.jit import FAST
 
 LINES = 16
 """Fibre lines that are solved side by side."""

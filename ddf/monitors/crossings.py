@@ -46,7 +46,7 @@ def crossings_of(x: Array, exists: NDArray[np.bool_]) -> int:
     points = np.moveaxis(points, 0, -1)  # (c, 4, 3)
     middle = points.mean(axis=1)
     reach = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
-    pairs = cKDTree(middle).query_pairs(2.0 * float(np.quantile(reach, 0.9)), output_type="ndarray")
+    pairs = _near(middle, reach)
     pairs = pairs[np.abs(cells[pairs[:, 0]] - cells[pairs[:, 1]]).max(axis=1) > APART]
     away = np.linalg.norm(middle[pairs[:, 0]] - middle[pairs[:, 1]], axis=1)
     pairs = pairs[away < reach[pairs].sum(axis=1)]
@@ -54,6 +54,23 @@ def crossings_of(x: Array, exists: NDArray[np.bool_]) -> int:
     one, other = points[both[:, 0]], points[both[:, 1]]
     return int(sum(_through(one[:, a], one[:, b], *(other[:, c] for c in triangle)).sum()
                    for a, b in EDGES for triangle in TRIANGLES))  # fmt: skip
+
+
+def _near(middle: Array, reach: Array) -> NDArray[np.intp]:
+    """Pairs (k, 2) of cells among which are all whose balls, about `middle` with radius `reach`, meet.
+
+    By classes of size, each with itself and all smaller ones: fine cells need not look as far as coarse ones.
+    """
+    sizes = np.ceil(np.log2(np.maximum(reach, 1e-300)))
+    found = []
+    for size in np.unique(sizes):
+        own, smaller = np.flatnonzero(sizes == size), np.flatnonzero(sizes < size)
+        tree, far = cKDTree(middle[own]), 2.0 * float(reach[own].max())
+        found.append(own[tree.query_pairs(far, output_type="ndarray")])
+        if smaller.size:
+            near = tree.sparse_distance_matrix(cKDTree(middle[smaller]), far, output_type="ndarray")
+            found.append(np.stack([own[near["i"]], smaller[near["j"]]], axis=1))
+    return np.concatenate(found)
 
 
 def _through(start: Array, end: Array, a: Array, b: Array, c: Array) -> NDArray[np.bool_]:

@@ -71,9 +71,26 @@ def sky_light(view: TopView) -> Array:
     """Share of the sky each pixel sees, roughly: darker where it lies below its surroundings."""
     total = np.zeros_like(view.z)
     for radius in (SKY_RADIUS_MM, 0.35 * SKY_RADIUS_MM):
-        below = ndimage.gaussian_filter(view.z, radius / view.pixel_mm) - view.z
-        total += below / radius
+        total += (_blurred(view.z, radius / view.pixel_mm) - view.z) / radius
     return np.clip(1.0 - 0.9 * total, 0.45, 1.15)
+
+
+def _blurred(image: Array, sigma: float) -> Array:
+    """The image blurred by a Gaussian of `sigma` pixels, at a resolution at which that is three to six pixels."""
+    coarse = max(1, int(sigma / 3.0))
+    small = ndimage.gaussian_filter(ndimage.uniform_filter(image, coarse)[::coarse, ::coarse], sigma / coarse)
+    if coarse == 1:
+        return np.asarray(small)
+    return _stretched(_stretched(small, coarse, image.shape[0]).T, coarse, image.shape[1]).T
+
+
+def _stretched(image: Array, factor: int, rows: int) -> Array:
+    """The image with `rows` rows, of which every `factor`-th is one of its own, the others interpolated."""
+    place = np.minimum(np.arange(rows) / factor, image.shape[0] - 1.0)
+    low = np.minimum(place.astype(np.intp), max(image.shape[0] - 2, 0))
+    part = (place - low)[:, None]
+    between: Array = image[low] * (1.0 - part) + image[np.minimum(low + 1, image.shape[0] - 1)] * part
+    return between
 
 
 def photograph(

@@ -90,7 +90,7 @@ def assemble(
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
         tool_offset=0.5 * sheets[0].thickness, tool_stiffness=stiff, tool_damping=tool_damping, tool_mass=mass0,
-        tool_friction=tool.friction if tool else 0.0, gravity=np.asarray(gravity, dtype=float),
+        tool_friction=tool.friction if tool else 0.0, tool_boxed=False, gravity=np.asarray(gravity, dtype=float),
         dt=_step(sheets, touches),
     )  # fmt: skip
     x = np.concatenate([s.start.ravel() for s in sheets])

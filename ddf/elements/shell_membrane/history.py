@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 (
     M_C11, M_C12, M_C22, M_TENSION1, M_TENSION2, M_SHEAR1, M_SHEAR2, M_E1, M_E2,

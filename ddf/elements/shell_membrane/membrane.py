@@ -41,7 +41,7 @@ from ddf.elements.shell_membrane.history import (
     load,
     store,
 )
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 # fields of a tile: the history in its order, then tangents, hourglass, area, increments, and what pulls
 C11, C12, C22, N1, N2, S1, S2, E1, E2 = (np.uint64(k * TILE) for k in range(9))

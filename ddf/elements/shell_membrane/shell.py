@@ -40,7 +40,7 @@ from ddf.elements.shell_membrane.history import (
     load,
     store,
 )
-from ddf.elements.tension import FAST
+from ddf.jit import FAST
 
 # fields of a tile: the history in its order; edges of x and means of d on them; then sums over the components
 C11, C12, C22, B11, B12, B22, N1, N2, M1, M2 = (np.uint64(k * TILE) for k in range(10))

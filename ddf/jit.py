@@ -1,0 +1,16 @@
+"""How kernels are compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+INLINE: dict[str, Any] = {
+    "fastmath": True, "error_model": "numpy", "boundscheck": False, "nogil": True, "forceinline": True,
+}  # fmt: skip
+"""Options of small functions that are part of whatever kernel calls them. (numba's own `inline="always"` has their
+types found out again for every call: compiling took a third longer.)"""
+
+FAST: dict[str, Any] = {
+    "fastmath": True, "error_model": "numpy", "boundscheck": False, "nogil": True, "cache": True,
+}  # fmt: skip
+"""Options of kernels."""
