@@ -2,7 +2,8 @@
 
 A named tuple of forty arrays is handed from function to function as some three hundred numbers, and a compiler that
 follows them through a dozen functions takes minutes. `held` copies the fields (not the arrays) into one block of memory
-of numba's own; compiled code reads `handle.field` as it read `tuple.field`.
+of numba's own; compiled code reads `handle.field` as it read `tuple.field`. The handle does not own the arrays: who
+holds it holds the tuple too. (Counting owners, two threads would write to the same few counters at every access.)
 """
 
 from __future__ import annotations
@@ -30,6 +31,20 @@ class Handle(structref.StructRefProxy):
 structref.define_boxing(HandleType, Handle)
 
 
+def _borrowed(context, builder, kind, value):
+    """Code for a value without owners: references to it are not counted."""
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        array.parent = cgutils.get_null_value(array.parent.type)
+        return array._getvalue()
+    if isinstance(kind, types.Tuple | types.UniTuple):
+        for position, part in enumerate(kind.types):
+            borrowed = _borrowed(context, builder, part, builder.extract_value(value, position))
+            value = builder.insert_value(value, borrowed, position)
+    return value
+
+
 @intrinsic
 def _hold(typingctx, data):
     """A handle on the fields of a named tuple."""
@@ -45,9 +60,7 @@ def _hold(typingctx, data):
         builder.store(cgutils.get_null_value(block), pointer)
         values = cgutils.create_struct_proxy(kind.get_data_type())(context, builder, ref=pointer)
         for position, (name, field) in enumerate(zip(data.fields, data.types, strict=True)):
-            value = builder.extract_value(args[0], position)
-            context.nrt.incref(builder, field, value)
-            setattr(values, name, value)
+            setattr(values, name, _borrowed(context, builder, field, builder.extract_value(args[0], position)))
         handle = context.make_helper(builder, kind)
         handle.meminfo = memory
         return handle._getvalue()
@@ -57,5 +70,5 @@ def _hold(typingctx, data):
 
 @njit(cache=True)
 def held(data):
-    """A handle on the fields of a named tuple `data`; arrays are shared, numbers copied."""
+    """A handle on the fields of a named tuple `data`; arrays are shared, not owned, numbers copied."""
     return _hold(data)
