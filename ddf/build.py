@@ -104,7 +104,7 @@ def build_scene(case: Case) -> Scene:
     return Scene(
         case=case, model=model, state=state, sheets=_infos(case, stack, model, scale), path=load_path(case),
         base_z=face - height, tool_mesh=tool_mesh, tool_field=tool_field,
-        step_limit=limit,
+        step_limit=limit, first_step_s=dt,
     )  # fmt: skip
 
 
@@ -425,7 +425,7 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray) -> State:
         press=np.zeros(model.mass.size), tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
         director=np.zeros(3 * size), spin=np.zeros(3 * size), pull=np.zeros(3 * size), history=np.zeros(HISTORY * size),
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
-        clock=np.zeros(2),
+        clock=np.zeros(4),
     )  # fmt: skip
     for k in np.flatnonzero(shells):
         sheet_shells(model, state.history, int(k), HISTORY)[[M_C11, M_C22, S_C11, S_C22]] = 1.0

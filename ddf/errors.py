@@ -65,6 +65,13 @@ class MeshError(DdfError):
 
 
 class UnstableError(DdfError):
-    """The run went wrong: says where, when, the likely cause and the key to change."""
+    """The run went wrong: says where, when, the likely cause and the key to change.
+
+    `smaller_step`: a smaller step may cure it.
+    """
 
     exit_code = 3
+
+    def __init__(self, message: str, hint: str = "", *, smaller_step: bool = False) -> None:
+        super().__init__(message, hint)
+        self.smaller_step = smaller_step

@@ -176,7 +176,7 @@ class State(NamedTuple):
     history: np.ndarray
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
-    clock: np.ndarray  # (2,): step number, time [s]
+    clock: np.ndarray  # (4,): step number, time [s]; the same where the step last changed
 
 
 @njit(**INLINE)

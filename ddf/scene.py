@@ -44,11 +44,13 @@ class Scene:
     tool_mesh: TriangleMesh | None
     tool_field: DistanceField | None
     step_limit: float  # stable step [s], safety included
+    first_step_s: float  # step [s] of the model as it was built; a run may cut it
 
     @property
     def steps(self) -> int:
         """Steps of the whole process."""
-        return int(np.ceil(self.path.duration / self.model.dt - 1e-9))
+        first, begin = self.state.clock[2:4]
+        return int(first) + int(np.ceil((self.path.duration - begin) / self.model.dt - 1e-9))
 
     @property
     def ply_sheets(self) -> list[int]:

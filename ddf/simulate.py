@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ddf.contact.layers import NOWHERE, chunk_scratch
@@ -84,6 +86,11 @@ class Simulation:
             for k in diaphragms
         }
 
+    def time_of(self, step: Any) -> Any:
+        """Process time [s] at step numbers from now on, with the step as it is."""
+        first, begin = self.state.clock[2:4]
+        return begin + (step - first) * self.model.dt
+
     def recount(self) -> None:
         """Take the state as it is now (after it was read from a checkpoint) as the start of the next batch."""
         self._volumes = self._swept()
@@ -106,7 +113,7 @@ class Simulation:
 
     def _batch(self, steps: int) -> None:
         model, state = self.model, self.state
-        times = np.arange(self.step, self.step + steps, dtype=np.float64) * model.dt
+        times = self.time_of(np.arange(self.step, self.step + steps, dtype=np.float64))
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
         self.work.sleep[:] = 0
         self.work.rest[:] = self._followed
@@ -114,7 +121,7 @@ class Simulation:
         self.seek(reach * steps)
         self.team.run(advance, *self.handles, schedule, self.step, reach)
         state.clock[0] += steps
-        state.clock[1] = state.clock[0] * model.dt
+        state.clock[1] = self.time_of(state.clock[0])
         if steps:
             self._account_pressure(schedule)
 

@@ -31,9 +31,16 @@ class Solver(Section):
         default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
-    step_safety: float = Field(default=0.9, gt=0, le=1, description="Step as a fraction of the stable one.")
+    step_safety: float = Field(default=0.85, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(
         default=None, gt=0, le=1e-2, description="Time step [s]; left out: the stable one times step_safety."
+    )
+    step_cuts: int = Field(
+        default=2,
+        ge=0,
+        le=10,
+        description="Times that a run which a guard would stop goes back to its last good state and on with 0.7 of the "
+        "step; 0: it stops.",
     )
     contact_stiffness_N_mm3: float = Field(
         default=3.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."

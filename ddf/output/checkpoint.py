@@ -18,7 +18,7 @@ from ddf.output.folder import RunFolder
 from ddf.scene import Scene
 
 CHECKPOINT = "checkpoint.npz"
-VERSION = 1
+VERSION = 2
 FREE_KEYS = ("title", "solver.threads")  # may differ between a run and its resumption
 
 
@@ -29,8 +29,8 @@ def save_checkpoint(folder: RunFolder, scene: Scene, state: Any, extra: dict[str
     with replacing(folder / CHECKPOINT) as temporary, temporary.open("wb") as stream:
         np.savez(
             stream, version=VERSION, case=np.array(case), case_hash=np.array(case_hash(scene.case)),
-            sheets=_shapes(scene), dt=scene.model.dt, step=state.clock[0], time_s=state.clock[1],
-            extra=np.array(json.dumps(extra)), **arrays,
+            sheets=_shapes(scene), dt=scene.model.dt, first_dt=scene.first_step_s, step=state.clock[0],
+            time_s=state.clock[1], extra=np.array(json.dumps(extra)), **arrays,
         )  # fmt: skip
         stream.flush()
 
@@ -38,6 +38,7 @@ def save_checkpoint(folder: RunFolder, scene: Scene, state: Any, extra: dict[str
 def load_checkpoint(folder: RunFolder, scene: Scene) -> dict[str, Any]:
     """Fill the scene's state in place from checkpoint.npz and return the `extra` that was saved with it.
 
+    `extra["step_s"]` is the step [s] that the run was at: less than the scene's where it was cut.
     Raises UsageError, and leaves the state as it was, if there is no checkpoint, if it cannot be read, or if it
     is of another case or mesh: the message says what differs.
     """
@@ -51,10 +52,10 @@ def load_checkpoint(folder: RunFolder, scene: Scene) -> dict[str, Any]:
             f"{path} belongs to another case:\n" + "\n".join(f"  {change}" for change in changes[:20]),
             "resume with the case as it was, or start again with --force",
         )
-    if not np.array_equal(saved["sheets"], _shapes(scene)) or float(saved["dt"]) != scene.model.dt:
+    if not np.array_equal(saved["sheets"], _shapes(scene)) or float(saved["first_dt"]) != scene.first_step_s:
         raise UsageError(
             f"{path} belongs to another mesh or step: nodes of the sheets {saved['sheets'].tolist()} "
-            f"(now {_shapes(scene).tolist()}), step {float(saved['dt']):.6g} s (now {scene.model.dt:.6g} s)",
+            f"(now {_shapes(scene).tolist()}), step {float(saved['first_dt']):.6g} s (now {scene.first_step_s:.6g} s)",
             "the meshing may have changed with the version; start again with --force",
         )
     arrays = scene.state._asdict()
@@ -67,7 +68,7 @@ def load_checkpoint(folder: RunFolder, scene: Scene) -> dict[str, Any]:
             )
     for name, array in arrays.items():
         array[...] = saved[f"state_{name}"]
-    return dict(json.loads(str(saved["extra"])))
+    return dict(json.loads(str(saved["extra"]))) | {"step_s": float(saved["dt"])}
 
 
 def case_hash(case: Case) -> str:

@@ -19,6 +19,9 @@ def finish(runner: Runner, reason: str) -> RunResult:
     """Write what a run that stopped at its end or at a signal leaves, and return how it ended."""
     scene, out, watch = runner.scene, runner.out, runner.watch
     result = RunResult(out.path, reason, runner.sim.step, runner.sim.time, watch.seconds)
+    result.notes += [
+        f"the step was cut to {cut['step_s']:.3g} s at {cut['time_s']:.6g} s: {cut['reason']}" for cut in runner.cuts
+    ]
     if reason == "finished":
         with watch("post-processing"):
             result.checks, result.plies = finish_folder(scene, out, runner.energy, runner.sim.time, result.notes)
@@ -42,6 +45,7 @@ def write_info(runner: Runner, reason: str, message: str, checks: list[Check] | 
         "process_time_s": sim.time,
         "step_s": scene.model.dt,
         "step_limit_s": scene.step_limit,
+        "step_cuts": runner.cuts,
         "wall_s": {key: round(value, 3) for key, value in runner.watch.seconds.items()},
         "peak_memory_MiB": peak_memory_mib(),
         "mesh": mesh_summary(scene),

@@ -2,13 +2,19 @@
 
 Observers never change physics. Batches of steps end at multiples of `solver.check_interval_steps`, in a run
 that is resumed as in one that is not; everything that is written is written at the end of a batch.
+
+Where a guard finds that the solver has lost its hold, the run goes back to its last good state and on with a smaller
+step, `solver.step_cuts` times at most, and says so. (That state is a few hundred steps old. A run that was interrupted
+since goes back to where it was resumed: only there do a resumed run and one that was not differ.)
 """
 
 from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from logging import Logger
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +38,10 @@ REPORT_EVERY_S = 1.0
 
 REMEMBERED = 4
 """Checks between two copies of a good state: copying takes a few percent of the time of one check's steps."""
+
+
+STEP_CUT = 0.7
+"""What is left of the step where it is cut."""
 
 
 class Runner:
@@ -59,17 +69,34 @@ class Runner:
         self.earlier_wall = 0.0
         self.history: HistoryWriter | None = None
         self.good = State(*(array.copy() for array in scene.state))  # the last state that all guards have passed
-        self.good_frames, self.good_checks, self.saved_step = 0, 0, -1
+        self.good_frames, self.saved_step = 0, -1
+        self.cuts: list[dict[str, Any]] = []
 
     def resume(self) -> None:
         """Go back to the folder's checkpoint."""
         extra = load_checkpoint(self.out, self.scene)
         self.out.sweep()
+        self.cuts = list(extra.get("cuts", []))
+        self._use_step(float(extra["step_s"]))
         self.frames_done = int(extra["frames_done"])
         self.earlier_wall = float(extra["wall_s"])
         self.watch.seconds["steps"] = float(extra.get("steps_s", 0.0))
         self.saved_step = self.sim.step
+        self._go_on()
+        self._remember()
+
+    def _use_step(self, step_s: float) -> None:
+        """Go on with steps of this length [s]."""
+        if step_s != self.scene.model.dt:
+            self.scene = replace(self.scene, model=self.scene.model._replace(dt=step_s))
+            self.sim.close()
+            self.sim = Simulation(self.scene, self.threads)
+
+    def _go_on(self) -> None:
+        """Take the state as it is now for the run's, and drop what was written of a later one."""
         self.sim.recount()
+        self.steps = self.scene.steps
+        self.frame_times = _frame_times(self.scene)
         self.energy = energies(self.scene.model, self.scene.state)
         self.history = HistoryWriter(self.out, self.names, self.sim.step)
         self._end_if_settled()
@@ -92,10 +119,17 @@ class Runner:
         while self.sim.step < self.steps:
             with self.watch("steps"):
                 self.sim.advance(min(interval - self.sim.step % interval, self.steps - self.sim.step))
-            self._guard()
-            with self.watch("output"):
-                self._observe(began)
-            self._remember()
+            try:
+                self._guard()
+                with self.watch("output"):
+                    self._observe(began)
+            except UnstableError as error:
+                if not error.smaller_step or len(self.cuts) >= self.scene.case.solver.step_cuts:
+                    raise
+                self._cut_step(error)
+                continue
+            if self.sim.step // interval % REMEMBERED == 0:
+                self._remember()
             now = clock.perf_counter()
             if now - last_report > REPORT_EVERY_S or self.sim.step == self.steps:
                 last_report = now
@@ -119,23 +153,35 @@ class Runner:
     def _guard(self) -> None:
         """Stop a run that has gone wrong."""
         sim = self.sim
-        alarm = check_state(self.scene.model, self.scene.state, self.names, self.start_x)
-        alarm = alarm or check_passage(self.scene, sim.time)
+        lost = check_state(self.scene.model, self.scene.state, self.names, self.start_x)
+        alarm = lost or check_passage(self.scene, sim.time)
         if alarm is not None:
-            raise UnstableError(f"step {sim.step}, process time {sim.time:.6f} s: {alarm}", self._kept())
+            text = f"step {sim.step}, process time {sim.time:.6f} s: {alarm}"
+            raise UnstableError(text, self._kept(), smaller_step=lost is not None)
 
     def _remember(self) -> None:
-        """Keep a copy of a state that has passed all guards, of every REMEMBERED-th check."""
-        self.good_checks += 1
-        if self.good_checks % REMEMBERED == 0:
-            for kept, array in zip(self.good, self.scene.state, strict=True):
-                np.copyto(kept, array)
-            self.good_frames = self.frames_done
+        """Keep a copy of a state that has passed all guards."""
+        for kept, array in zip(self.good, self.scene.state, strict=True):
+            np.copyto(kept, array)
+        self.good_frames = self.frames_done
+
+    def _cut_step(self, error: UnstableError) -> None:
+        """Go back to the last good state and on with a smaller step."""
+        for array, kept in zip(self.scene.state, self.good, strict=True):
+            np.copyto(array, kept)
+        self.scene.state.clock[2:4] = self.scene.state.clock[:2]
+        self.frames_done = self.good_frames
+        self._use_step(STEP_CUT * self.scene.model.dt)
+        self._go_on()
+        sim, dt = self.sim, self.scene.model.dt
+        self.cuts.append({"step": sim.step, "time_s": sim.time, "step_s": dt, "reason": error.message})
+        self.log.warning("%s", error.message)
+        self.log.warning("back to step %d, %.6f s, and on with steps of %.3g s", sim.step, sim.time, dt)
 
     def keep_last_good(self) -> None:
         """Make the last good state the checkpoint, unless the one that is there is later."""
         if self.good.clock[0] > self.saved_step:
-            extra = {"frames_done": self.good_frames, "wall_s": self.earlier_wall}
+            extra = {"frames_done": self.good_frames, "wall_s": self.earlier_wall, "cuts": self.cuts}
             save_checkpoint(self.out, self.scene, self.good, extra)
 
     def _kept(self) -> str:
@@ -181,11 +227,14 @@ class Runner:
                 f"step {self.sim.step}, process time {self.sim.time:.6f} s: energy error of {error:.1f} % of the "
                 f"work done, over solver.energy_error_limit_percent = {limit:g}",
                 f"try a smaller solver.step_safety; {self._kept()}",
+                smaller_step=True,
             )
 
     def _checkpoint(self, wall: float) -> None:
         steps = self.watch.seconds.get("steps", 0.0)
-        extra = {"frames_done": self.frames_done, "wall_s": self.earlier_wall + wall, "steps_s": steps}
+        extra = {
+            "frames_done": self.frames_done, "wall_s": self.earlier_wall + wall, "steps_s": steps, "cuts": self.cuts,
+        }  # fmt: skip
         save_checkpoint(self.out, self.scene, self.scene.state, extra)
         self.saved_step = self.sim.step
 
@@ -215,5 +264,6 @@ def _frame_times(scene: Scene) -> list[float]:
     times = [0.0]
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         times += [float(a + (b - a) * (k + 1) / count) for k in range(count)]
-    times[-1] = (scene.steps - 0.5) * scene.model.dt
+    first, begin = scene.state.clock[2:4]
+    times[-1] = float(begin + (scene.steps - 0.5 - first) * scene.model.dt)
     return times

@@ -101,7 +101,7 @@ def chart_explicit(quick: bool) -> Map:
     ratios = (0.8, 1.2) if quick else (0.3, 0.5, 0.7, 0.8, 0.9, 1.1, 1.3)
     dampings = (0.06,) if quick else (0.0, 0.06, 0.2, 0.5)
     z = np.linspace(0.0, 0.55, 50)
-    lines = (RuleLine("sqrt(1 + z^2) - z", _limit(z), z), RuleLine("0.9 of it: used", 0.9 * _limit(z), z))
+    lines = (RuleLine("sqrt(1 + z^2) - z", _limit(z), z), RuleLine("0.85 of it: used", 0.85 * _limit(z), z))
     return _map(
         _explicit, ratios, dampings, x_label="step over the undamped limit", y_label="solver.fibre_damping",
         lines=lines, log_x=False, log_y=False,
