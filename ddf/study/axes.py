@@ -110,6 +110,10 @@ def _bending(case: Case, value: Value, done: Changes) -> Changes:
     return {"diaphragms.bending": value == ON}
 
 
+def _self_contact(case: Case, value: Value, done: Changes) -> Changes:
+    return {"solver.self_contact": value == ON}
+
+
 def _mm(size: float) -> float:
     """A size to a thousandth of a millimetre, as a person would write it."""
     return round(size, 3)
@@ -142,6 +146,10 @@ AXES: dict[str, Axis] = {
         Axis(
             "bending", "bending of the diaphragms", (OFF, ON), lambda case: ON if case.diaphragms.bending else OFF,
             _bending, lambda _, value: f"bending-{value}", choices=(OFF, ON),
+        ),
+        Axis(
+            "self-contact", "of sheets that fold", (OFF, ON), lambda case: ON if case.solver.self_contact else OFF,
+            _self_contact, lambda _, value: f"self-contact-{value}", choices=(OFF, ON),
         ),
         Axis(
             "formulation", "of the plies", (NET, SHELL, LATTICE), _own_formulation, _formulation,
