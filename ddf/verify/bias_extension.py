@@ -18,9 +18,9 @@ fibres among many, and not that of the least energy: `net` finds that. At H = 3 
 say is reported beside it. On the lattice the grips and the free edges run through nodes, and the cells that
 the edges halve stick out by half a diagonal, whence errors of first order in the element.
 
-From 40 degrees on fibres are compressed beside the tips of the grips' triangles. Without any stiffness against bending in
-the plane their nodes then go to and fro across them, every other one, and never rest: cells with one point for shear do
-not see that motion. So a fabric without in-plane bending is given its rigidity out of the plane there, too (tows are
+From 40 degrees on fibres are compressed beside the tips of the grips' triangles. Without any stiffness against bending
+in the plane their nodes then go to and fro across them, every other one, and never rest: cells with one point for shear
+do not see that motion. So a fabric without in-plane bending is given its rigidity out of the plane there, too (tows are
 wider than thick; 0.3 N mm calms it, 0.02 does not, and the zones' way takes no bending).
 """
 
