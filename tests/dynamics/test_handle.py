@@ -45,4 +45,5 @@ def test_arrays_are_not_owned():
     before = sys.getrefcount(fields.values)
     handles = [held(fields) for _ in range(10)]
     assert [_work(handle) >= 0.0 for handle in handles] == [True] * 10
-    assert sys.getrefcount(fields.values) == before
+    after = sys.getrefcount(fields.values)
+    assert after == before
