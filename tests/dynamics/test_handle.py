@@ -6,13 +6,18 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ddf.dynamics.handle import held
+from ddf.dynamics.handle import _hold
 
 
 class Fields(NamedTuple):
     values: np.ndarray
     pair: tuple[np.ndarray, np.ndarray]
     factor: float
+
+
+@njit  # not `handle.held`: a type of this module in the users' cache could not be read by anybody else
+def held(data):
+    return _hold(data)
 
 
 @njit
