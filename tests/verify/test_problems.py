@@ -3,6 +3,7 @@
 from dataclasses import replace
 from importlib import import_module
 
+import numpy as np
 import pytest
 
 from ddf.verify import scenes
@@ -20,6 +21,14 @@ def test_quick_form_passes(name):
     assert [check for check in answer.checks if not check.passed] == []
     assert any(check.bound is not None for check in answer.checks)
     assert len({len(column) for column in answer.table.values()}) == 1
+
+
+@pytest.mark.parametrize("name", ["hemisphere", "capstan"])
+def test_two_threads_give_the_same_bits(name):
+    one, two = (load_problem(name).solve(replace(QUICK, threads=threads)).table for threads in (1, 2))
+    assert one.keys() == two.keys()
+    for column in one:
+        np.testing.assert_array_equal(one[column], two[column])
 
 
 def _sheets(key, factor):
