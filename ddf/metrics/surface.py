@@ -61,13 +61,23 @@ def fill_inactive(values: Array, active: Mask) -> Array:
 
 def at_points(values: Array, uv: Array) -> Array:
     """Bilinear values of a node field (c, n, m) at grid coordinates uv (k, 2), as (k, c)."""
-    n, m = values.shape[-2:]
-    i = np.clip(np.floor(uv[:, 0]).astype(int), 0, n - 2)
-    j = np.clip(np.floor(uv[:, 1]).astype(int), 0, m - 2)
-    s, t = uv[:, 0] - i, uv[:, 1] - j
-    low = (1 - s) * values[:, i, j] + s * values[:, i + 1, j]
-    high = (1 - s) * values[:, i, j + 1] + s * values[:, i + 1, j + 1]
-    return np.ascontiguousarray(((1 - t) * low + t * high).T)
+    found = np.empty((len(uv), len(values)))
+    _bilinear(np.ascontiguousarray(values, dtype=np.float64), np.ascontiguousarray(uv, dtype=np.float64), found)
+    return found
+
+
+@njit(cache=True)
+def _bilinear(values: Array, uv: Array, found: Array) -> None:
+    """Fill found (k, c) with the values (c, n, m) at uv (k, 2)."""
+    n, m = values.shape[1], values.shape[2]
+    for k in range(uv.shape[0]):
+        i = min(max(int(np.floor(uv[k, 0])), 0), n - 2)
+        j = min(max(int(np.floor(uv[k, 1])), 0), m - 2)
+        s, t = uv[k, 0] - i, uv[k, 1] - j
+        for c in range(values.shape[0]):
+            low = (1 - s) * values[c, i, j] + s * values[c, i + 1, j]
+            high = (1 - s) * values[c, i, j + 1] + s * values[c, i + 1, j + 1]
+            found[k, c] = (1 - t) * low + t * high
 
 
 def gap_field(surface: PlySurface) -> Array:
