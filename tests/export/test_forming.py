@@ -39,7 +39,7 @@ def formed(tmp_path_factory):
     frames.write(take_snapshot(scene, scene.state))
     for k in scene.ply_sheets:
         sheet_vectors(scene.model, scene.state.x, k)[2] = LEVEL
-    scene.state.clock[:] = scene.steps, scene.path.duration
+    scene.state.clock[:2] = scene.steps, scene.path.duration
     frames.write(take_snapshot(scene, scene.state))
     write_profiles(out, [ply_surface(scene, scene.state, k) for k in scene.ply_sheets])
     out.write_text("case.resolved.toml", resolved_toml(scene.case))

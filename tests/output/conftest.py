@@ -23,7 +23,7 @@ def scene(flat_scene):
         x = sheet_vectors(own.model, state.x, k)
         x[2] += 15.0 * np.exp(-(x[0] ** 2 + x[1] ** 2) / 40.0**2)
     state.v[:] = 1.5
-    state.clock[:] = round(own.path.duration / own.model.dt), own.path.duration
+    state.clock[:2] = round(own.path.duration / own.model.dt), own.path.duration
     return own
 
 
