@@ -21,7 +21,7 @@ the edges halve stick out by half a diagonal, whence errors of first order in th
 From 40 degrees on fibres are compressed beside the tips of the grips' triangles. Without any stiffness against bending
 in the plane their nodes then go to and fro across them, every other one, and never rest: cells with one point for shear
 do not see that motion. So beyond 35 degrees the fabric is given a part of its rigidity in the plane, too: 0.1 N mm
-calms it, 0.02 does not. (Tows are wider than thick. With 0.34 N mm all the way the force at 15 degrees is 4 % too large.)
+calms it, 0.02 does not. (Tows are wider than thick. With 0.34 N mm all the way the force at 15 degrees is 4 % high.)
 """
 
 from __future__ import annotations
