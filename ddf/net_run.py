@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ddf.build import _mesh_stack, _tool
+from ddf.build.stack import mesh_stack, mesh_tool
 from ddf.case import Case, resolved_toml
 from ddf.kinematic.drape import Drape, NetError, drape_ply
 from ddf.mesh.distance import DistanceField
@@ -89,8 +89,8 @@ def describe_net(case: Case) -> str:
 
 
 def _meshes(case: Case) -> tuple[list[PlyMesh], TriangleMesh | None, DistanceField | None]:
-    tool, field = (None, None) if case.tool is None else _tool(case.tool)
-    return _mesh_stack(case).plies, tool, field
+    tool, field = (None, None) if case.tool is None else mesh_tool(case.tool)
+    return mesh_stack(case).plies, tool, field
 
 
 def _drapes(case: Case, meshes: list[PlyMesh], field: DistanceField | None) -> tuple[list[Drape], list[NetError]]:

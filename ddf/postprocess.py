@@ -109,6 +109,8 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
         + ("1 thread" if info["threads"] == 1 else f"{info['threads']} threads"),
         "added mass": f"{added:.0f} g",
     }  # fmt: skip
+    if "fidelity" in info:
+        key_numbers["fidelity, chosen"] = f"{info['fidelity']['rung']} ({info['fidelity']['why']})"
     report = Report(
         title=case.title or out.path.name, summary=summary, key_numbers=key_numbers,
         plies=plies, audit=info["audit"], energies=last, settings=run.resolved_text,

@@ -46,6 +46,13 @@ def apply_overrides(
     return raw, tuple(done), faults
 
 
+def put(raw: dict[str, Any], key: str, value: Any) -> None:
+    """Set the value of a dotted key in nested tables. Raises KeyError where there is no such place."""
+    problem = _put(raw, _names(key), value)[1]
+    if problem:
+        raise KeyError(f"{key}: {problem}")
+
+
 def override_of(path: KeyPath, changes: Sequence[Override]) -> Override | None:
     """Return the last change that set the value at a key path, or a table around it."""
     for change in reversed(changes):

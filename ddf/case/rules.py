@@ -33,6 +33,7 @@ def key_problems(raw: Table) -> list[Problem]:
         found += one_of(process, ("process",), "stages", "breakpoints")
     if isinstance(solver := raw.get("solver"), dict):
         found += one_of(solver, ("solver",), "mass_scaling", "target_step_s", needed=False)
+    found += _fidelity(raw)
     return found
 
 
@@ -43,6 +44,18 @@ def one_of(table: Table, path: KeyPath, a: str, b: str, *, needed: bool = True) 
         yield Problem((*path, b), f"cannot be given together with {a}", f"either {a} or {b}")
     elif not given and needed:
         yield Problem((*path, a), f"one of {a} and {b} is required", f"either {a} or {b}")
+
+
+def _fidelity(raw: Table) -> Iterator[Problem]:
+    target, auto = raw.get("target"), raw.get("fidelity") == "auto"
+    if isinstance(target, dict):
+        yield from one_of(target, ("target",), "seconds", "accuracy_mm")
+        if not auto:
+            yield Problem(("target",), "means nothing without fidelity = 'auto'", "fidelity = 'auto', or no [target]")
+    elif auto and target is None:
+        yield Problem(("fidelity",), "'auto' needs a [target]", "target.seconds or target.accuracy_mm")
+    if auto and raw.get("model") == "kinematic":
+        yield Problem(("fidelity",), "'auto' chooses the model itself", "no model, or fidelity = 'as-given'")
 
 
 def _material(table: Table, path: KeyPath) -> Iterator[Problem]:

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from ddf.case.base import Section
 from ddf.case.diaphragms import Diaphragms, Frame, Friction
+from ddf.case.fidelity import Target
 from ddf.case.kinematic import Kinematic
 from ddf.case.materials import HyperelasticMaterial, Material, OgdenTerm, ShearTable, WovenMaterial
 from ddf.case.output import Output
@@ -36,6 +37,7 @@ __all__ = [
     "ShearTable",
     "Solver",
     "Stage",
+    "Target",
     "Tool",
     "WovenMaterial",
 ]
@@ -50,6 +52,12 @@ class Case(Section):
         description="'forming': the explicit forming simulation; 'kinematic': each ply draped by itself as a "
         "pin-jointed net, in milliseconds, without diaphragms, forces and wrinkles.",
     )
+    fidelity: Literal["as-given", "auto"] = Field(
+        default="as-given",
+        description="'as-given': elements, durations and model as they stand here; 'auto': those of the cheapest rung "
+        "of a ladder that is valid for the scene and meets [target]; `ddf check` prints which and why.",
+    )
+    target: Target | None = Field(default=None, description="What fidelity 'auto' is to meet.")
     frame: Frame = Field(default=Frame(), description="The clamping frame.")
     diaphragms: Diaphragms = Field(default=Diaphragms(), description="Both diaphragms.")
     materials: dict[str, Material] = Field(

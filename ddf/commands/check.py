@@ -23,6 +23,13 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
     from ddf.plausible import prepare
 
     loaded, source = load_source(case, overrides)
+    if loaded.fidelity == "auto":
+        from ddf.fidelity import choose
+        from ddf.run import default_threads
+
+        choice = choose(loaded, loaded.solver.threads or default_threads())
+        click.echo("\n".join([*choice.lines(), ""]))
+        loaded = choice.case
     if loaded.model == "kinematic":
         click.echo(describe_net(loaded))
     else:

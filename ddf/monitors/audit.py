@@ -146,6 +146,11 @@ def across_check(elements_across: float) -> Check:
     return check
 
 
+def time_check(seconds: float, target: float) -> Check:
+    """Whether steps took no longer than was asked for."""
+    return _check("wall time of the steps", seconds, target, "s", "the rung was as quick as it was taken for")
+
+
 def crossing_check(edges: int) -> Check:
     """Whether folds do not pass through themselves."""
     return _check("edges of a sheet through itself", edges, 0.0, "", "folds have not passed through themselves")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ddf.monitors.audit import Check
+from ddf.monitors.audit import Check, time_check
 from ddf.postprocess import finish_folder, report_of
 from ddf.provenance import peak_memory_mib, provenance
 from ddf.run.loop import Runner
@@ -25,6 +25,8 @@ def finish(runner: Runner, reason: str) -> RunResult:
     if reason == "finished":
         with watch("post-processing"):
             result.checks, result.plies = finish_folder(scene, out, runner.energy, runner.sim.time, result.notes)
+        if runner.choice is not None and runner.choice.seconds is not None:
+            result.checks.append(time_check(watch.seconds["steps"], runner.choice.seconds))
     write_info(runner, reason, "", result.checks)
     if reason == "finished":
         report_of(scene, out, result.notes)
@@ -51,6 +53,8 @@ def write_info(runner: Runner, reason: str, message: str, checks: list[Check] | 
         "mesh": mesh_summary(scene),
         "audit": checks or [],
     }
+    if runner.choice is not None:
+        info["fidelity"] = runner.choice.record()
     runner.out.write_json("run.json", info)
 
 

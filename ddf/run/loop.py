@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from ddf.errors import UnstableError
+from ddf.fidelity import Choice
 from ddf.model import State
 from ddf.monitors.energy import Energies, energies
 from ddf.monitors.passage import check_passage
@@ -55,9 +56,10 @@ class Runner:
         watch: Stopwatch,
         report: Callable[[Progress], None] | None,
         log: Logger,
+        choice: Choice | None = None,
     ) -> None:
         self.scene, self.out, self.threads, self.watch, self.report = scene, out, threads, watch, report
-        self.log = log
+        self.log, self.choice = log, choice
         self.start_x = scene.state.x.copy()
         self.sim = Simulation(scene, threads)
         self.names = [sheet.name for sheet in scene.sheets]

@@ -9,6 +9,7 @@ from pathlib import Path
 from ddf.case import Case, resolved_toml
 from ddf.case.load import Source
 from ddf.errors import UnstableError
+from ddf.fidelity import choose
 from ddf.kernel_cache import cache_note, warm_kernels
 from ddf.net_run import run_net
 from ddf.output.checkpoint import CHECKPOINT, load_checkpoint
@@ -48,10 +49,20 @@ def run_case(
     written and stop_reason is "interrupted"; before the first step, and on a second signal, KeyboardInterrupt is
     raised. `resume=True` goes on, bit for bit as if nothing had happened.
     Warnings about the case go to `warn`; its problems are placed by `source`. `compiled` says that kernels need not
-    be compiled beforehand. A case of the model "kinematic" is draped as a net instead (`net_run`), in one go.
+    be compiled beforehand. A case of the model "kinematic" is draped as a net instead (`net_run`), in one go. Of a case
+    whose fidelity is "auto" the rung is chosen first (`fidelity`).
     """
+    count = threads or case.solver.threads or default_threads()
+    choice, asked = None, case_text if case_text is not None else resolved_toml(case)
+    if case.fidelity == "auto":
+        choice = choose(case, count, Path(folder) if resume else None)
+        case = choice.case
+        if warn is not None:
+            warn("\n".join(choice.lines()))
     if case.model == "kinematic":
-        net = run_net(case, folder, case_text=case_text, replace=force or resume)
+        net = run_net(case, folder, case_text=asked, replace=force or resume)
+        if choice is not None:
+            net.notes.append(choice.lines()[0])
         return RunResult(Path(folder), "finished", 0, 0.0, net.wall_s, plies=net.plies, notes=net.notes)
     watch, warnings = Stopwatch(), [f"note: {note}"] if (note := cache_note()) else list[str]()
     with Interrupt() as interrupt:
@@ -71,12 +82,13 @@ def run_case(
         with folder_lock(out.path):
             again = _make_ready(out, scene, resume, force)
             with run_log(out) as log:
-                count = threads or case.solver.threads or default_threads()
                 log.info("%s: %s on %d threads", "resumed" if again else "started", case.title or "no title", count)
                 for text in warnings:
                     log.warning("%s", text.removeprefix("warning: "))
-                runner = Runner(scene, out, count, watch, report, log)
-                return _run(runner, case_text if case_text is not None else resolved_toml(case), again, interrupt)
+                for line in choice.lines() if choice is not None else ():
+                    log.info("%s", line)
+                runner = Runner(scene, out, count, watch, report, log, choice)
+                return _run(runner, asked, again, interrupt)
 
 
 def _make_ready(out: RunFolder, scene: Scene, resume: bool, force: bool) -> bool:

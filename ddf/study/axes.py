@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from ddf.case import Case, WovenMaterial, woven_material
+from ddf.case.changes import Changes, stretched
 from ddf.case.preset_data import PRESET_DATA
 
 Value = float | str
-Changes = dict[str, Any]
 
 LATTICE, SHELL, NET = "lattice", "shell-membrane", "net"
 ON, OFF = "on", "off"
@@ -62,20 +62,7 @@ def _mass(case: Case, value: Value, done: Changes) -> Changes:
 
 
 def _load_time(case: Case, value: Value, done: Changes) -> Changes:
-    """All durations times f, and mass damping over f.
-
-    With tau = t/f the motion  m x'' + c m x' = F(x, tau)  is that of the mass m/f^2 with damping c f in tau: so c/f
-    keeps the damping of each stage (c times its duration), and drag and inertia grow together as 1/f^2.
-    """
-    factor, process = float(value), case.process
-    changes: Changes = {"solver.mass_damping_1_s": case.solver.mass_damping_1_s / factor}
-    if process.breakpoints is not None:
-        return changes | {"process.breakpoints.time_s": [factor * time for time in process.breakpoints.time_s]}
-    for k, stage in enumerate(process.stages or ()):
-        changes[f"process.stages.{k}.duration_s"] = float(f"{factor * stage.duration_s:.9g}")
-        if stage.mass_damping_1_s is not None:
-            changes[f"process.stages.{k}.mass_damping_1_s"] = stage.mass_damping_1_s / factor
-    return changes
+    return stretched(case, float(value))
 
 
 def _fibre(case: Case, value: Value, done: Changes) -> Changes:

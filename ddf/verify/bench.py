@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from ddf.build import corner_sum, first_places, row_blocks, state_at_rest
+from ddf.build import state_at_rest
+from ddf.build.pairs import first_places
+from ddf.build.pools import corner_sum, row_blocks
 from ddf.case import HyperelasticMaterial, WovenMaterial
 from ddf.contact.patch import patch_centres
 from ddf.dynamics import timestep

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ddf.build import TONNE_PER_KG_M3
+from ddf.build.step import TONNE_PER_KG_M3
 from ddf.case import PRESETS, HyperelasticMaterial, WovenMaterial
 from ddf.loads.path import LoadPath
 from ddf.materials import ogden

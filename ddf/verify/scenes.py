@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ddf.build import build_scene, state_at_rest, stiffest
+from ddf.build import build_scene, state_at_rest
+from ddf.build.step import stiffest
 from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
 from ddf.case.schema import WovenMaterial
