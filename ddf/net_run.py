@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -35,8 +37,18 @@ class NetResult:
     notes: list[str]
 
 
-def run_net(case: Case, folder: str | Path, *, case_text: str | None = None, replace: bool = False) -> NetResult:
+def run_net(
+    case: Case,
+    folder: str | Path,
+    *,
+    case_text: str | None = None,
+    replace: bool = False,
+    notes: Sequence[str] = (),
+    more: Mapping[str, Any] = MappingProxyType({}),
+) -> NetResult:
     """Drape all plies of a case, each by itself on the tool, and write the results.
+
+    notes: for the report, before its own; more: further entries of run.json.
 
     Raises NetError where a net cannot close, after the part that was laid has been written.
     """
@@ -50,7 +62,7 @@ def run_net(case: Case, folder: str | Path, *, case_text: str | None = None, rep
     wall = {"mesh": meshed - began, "net": clock.perf_counter() - meshed}
     surfaces = [net_surface(drape) for drape in drapes]
     tables = [net_metrics(drape, s, case.kinematic.locking_deg) for drape, s in zip(drapes, surfaces, strict=True)]
-    notes: list[str] = []
+    notes = list(notes)
     _write_frames(out, drapes, surfaces, tool)
     write_metrics(out, tables)
     write_wrinkles(out, [])
@@ -64,7 +76,7 @@ def run_net(case: Case, folder: str | Path, *, case_text: str | None = None, rep
         except (ImportError, OSError, RuntimeError, ValueError) as error:
             notes.append(f"pictures are missing: {type(error).__name__}: {error}")
     wall["output"] = clock.perf_counter() - meshed - wall["net"]
-    out.write_json("run.json", _info(case, drapes, wall, failures))
+    out.write_json("run.json", _info(case, drapes, wall, failures) | dict(more))
     _report(case, out, tables, wall, notes)
     if failures:
         raise failures[0]

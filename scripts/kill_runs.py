@@ -111,8 +111,9 @@ def killed_run(folder: Path, kills: int, lasts_s: float, chance: random.Random) 
         found += torn_files(folder)
         # Python itself ends by SIGINT, 130 to a shell, where that broke off an import
         allowed = (0, -signal.SIGKILL) if number == signal.SIGKILL else (0, 130, -signal.SIGINT)
-        starting = code == -signal.SIGTERM and not text
-        if (code not in allowed and not starting) or "Traceback" in text:
+        # before ddf has taken SIGTERM over, and once it is done and Python is closing down, the system ends it
+        outside = code == -signal.SIGTERM and (not text or finished(folder))
+        if (code not in allowed and not outside) or "Traceback" in text:
             found.append(f"signal {number.name}: exit code {code}: {text[-2000:]}")
         if code == 130 and (folder / "checkpoint.npz").exists() and "--resume" not in text:
             found.append(f"signal {number.name}: does not say how to go on: {text}")
@@ -126,6 +127,12 @@ def killed_run(folder: Path, kills: int, lasts_s: float, chance: random.Random) 
     if done.returncode != 0:
         found.append(f"the resumed run ended with {done.returncode}: {done.stderr.decode()[-2000:]}")
     return found
+
+
+def finished(folder: Path) -> bool:
+    """Whether the run in a folder says that it came to its end."""
+    info = folder / "run.json"
+    return info.is_file() and json.loads(info.read_text())["stop_reason"] == "finished"
 
 
 def _place(folder: Path) -> str:

@@ -8,7 +8,7 @@ from ddf.case.base import Section
 
 
 class Target(Section):
-    """One of the two."""
+    """What `fidelity = "auto"` is to meet: one of the two."""
 
     seconds: float | None = Field(
         default=None, gt=0, le=1e7,

@@ -15,6 +15,7 @@ TEMPLATE: str = (files("ddf.case") / "template.toml").read_text(encoding="utf-8"
 
 _TABLES: tuple[tuple[str, type[Section]], ...] = (
     ("(top of the file)", schema.Case),
+    ("[target]", schema.Target),
     ("[frame]", schema.Frame),
     ("[diaphragms]", schema.Diaphragms),
     ('[materials.NAME], kind = "woven"', schema.WovenMaterial),

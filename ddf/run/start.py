@@ -60,9 +60,9 @@ def run_case(
         if warn is not None:
             warn("\n".join(choice.lines()))
     if case.model == "kinematic":
-        net = run_net(case, folder, case_text=asked, replace=force or resume)
-        if choice is not None:
-            net.notes.append(choice.lines()[0])
+        chosen = {} if choice is None else {"fidelity": choice.record()}
+        notes = [] if choice is None else choice.lines()[:1]
+        net = run_net(case, folder, case_text=asked, replace=force or resume, notes=notes, more=chosen)
         return RunResult(Path(folder), "finished", 0, 0.0, net.wall_s, plies=net.plies, notes=net.notes)
     watch, warnings = Stopwatch(), [f"note: {note}"] if (note := cache_note()) else list[str]()
     with Interrupt() as interrupt:
