@@ -27,6 +27,7 @@ import tomli_w
 from ddf.build import load_path
 from ddf.case import Case, load_case
 from ddf.errors import DdfError
+from ddf.fidelity import choose
 from ddf.plausible import examine, prepare
 from ddf.plausible.cost import node_counts
 
@@ -42,6 +43,10 @@ TEXTS = (
     "regular-tetrahedron", "silicone-ogden", "plain-weave-6k-320", "linear", "monotone", "published", "m", "inch",
 )  # fmt: skip
 EXTRA: dict[str, Any] = tomllib.loads("""
+fidelity = "auto"
+seconds = 60
+accuracy_mm = 0.2
+target = {seconds = 100}
 holes_mm = [[[0, 0], [30, 0], [0, 30]]]
 slits_mm = [[[0, 0], [50, 50]]]
 polygon_mm = [[0, 0], [200, 0], [0, 200]]
@@ -162,6 +167,8 @@ def judged(data: bytes, folder: Path, deep: bool) -> tuple[str, str]:
     began = time.process_time()
     try:
         case = load_case(file)
+        if case.fidelity == "auto":
+            case = choose(case, 2).case
         found = examine(case)
         if found.faults:
             return _timed("refused", began)

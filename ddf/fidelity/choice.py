@@ -20,7 +20,10 @@ NET_SECONDS = 1.0  # at most, with everything around it
 
 @dataclass(frozen=True)
 class Step:
-    """A rung as this scene has it: the case on it, what it would cost and be off, why it cannot be used (or "")."""
+    """A rung as this scene has it: the case on it, what it would cost and be off, why it cannot be used (or "").
+
+    Where the rung makes no case at all, `case` is the one that asks.
+    """
 
     rung: Rung
     case: Case
@@ -82,13 +85,14 @@ class Choice:
     def _row(self, step: Step) -> tuple[str, ...]:
         mark = "->" if step is self.chosen else ""
         error = "the measure" if step.error_mm == 0.0 else f"{step.error_mm:.2g} mm"
+        cost = f"about {step.seconds:.0f} s" if math.isfinite(step.seconds) else "-"
         if step.rung.ply_mm is None:
             return mark, step.rung.name, "net", "none", "none", error, f"under {NET_SECONDS:g} s"
-        if not math.isfinite(step.seconds):
-            return mark, step.rung.name, "-", "-", "-", error, "-"
+        if step.case.fidelity == "auto":  # there is no such case
+            return mark, step.rung.name, "-", "-", "-", error, cost
         ply, skin = step.case.plies[0].element_mm, step.case.diaphragms.element_mm
         process = f"{load_path(step.case).duration:.3g} s"
-        return mark, step.rung.name, f"{ply:g} mm", f"{skin:g} mm", process, error, f"about {step.seconds:.0f} s"
+        return mark, step.rung.name, f"{ply:g} mm", f"{skin:g} mm", process, error, cost
 
 
 def choose(case: Case, threads: int, earlier: Path | None = None) -> Choice:
@@ -136,8 +140,8 @@ def _step(case: Case, rung: Rung, threads: int, scale: float) -> Step:
     except CaseError as refusal:
         return Step(rung, case, float("nan"), error, "; ".join(fault.problem for fault in refusal.faults))
     why = obstacle(there, rung)
-    seconds = NET_SECONDS
-    if rung.ply_mm is not None:  # the tool costs next to nothing in a step, and seconds to mesh
+    seconds = math.nan if why else NET_SECONDS
+    if not why and rung.ply_mm is not None:  # the tool costs next to nothing in a step, and seconds to mesh
         seconds = seconds_estimate(build_scene(there.model_copy(update={"tool": None}))) / speedup(threads)
     return Step(rung, there, seconds, error, why)
 

@@ -7,11 +7,9 @@ a net knows nothing of a second ply.
 
 from __future__ import annotations
 
-from ddf.build import load_path
 from ddf.case import Case
 from ddf.fidelity.ladder import Rung
-from ddf.plausible.findings import Findings
-from ddf.plausible.mesh import examine_mesh
+from ddf.plausible import examine
 
 PLY_ELEMENTS_A_FILLET = 1.2
 """Largest element of a ply over the fillets' radius. Measured: 1.2 forms, 1.6 does not."""
@@ -27,9 +25,6 @@ def obstacle(case: Case, rung: Rung) -> str:
     coarsest = max(ply.element_mm for ply in case.plies)
     if tool is not None and tool.shape != "file" and coarsest > PLY_ELEMENTS_A_FILLET * tool.fillet_mm:
         return f"elements of {coarsest:g} mm do not form over fillets of {tool.fillet_mm:g} mm"
-    found = Findings()
-    examine_mesh(case, load_path(case), found)
-    for problem in (*found.faults, *found.warnings):
-        if "element_mm" in problem.path or "fillet_mm" in problem.path:
-            return f"{problem.path[-1]} of {problem.problem}"
-    return ""
+    found = examine(case)
+    grid = [problem for problem in found.warnings if {"element_mm", "fillet_mm"} & set(problem.path)]
+    return next((f"{problem.path[-1]}: {problem.problem}" for problem in (*found.faults, *grid)), "")
