@@ -51,19 +51,32 @@ def _edges(faces):
 
 
 def _near(segments, corners):
-    """Numbers of all segments (k, 2, 3) and triangles (q, 3, 3) whose bounding spheres meet, among others."""
+    """Numbers of all segments (k, 2, 3) and triangles (q, 3, 3) whose boxes meet."""
     middle, half = segments.mean(axis=1), 0.5 * np.linalg.norm(np.diff(segments, axis=1)[:, 0], axis=1)
     centre = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
-    size = np.ceil(2.0 * np.log2(np.maximum(radius, 1e-9))).astype(int)
-    which, face = [], []
-    for k in np.unique(size):
-        members = np.flatnonzero(size == k)
-        found = cKDTree(centre[members]).query_ball_point(middle, half + radius[members].max())
-        count = np.array([len(hits) for hits in found])
-        which.append(np.repeat(np.arange(len(middle)), count))
-        face.append(members[np.concatenate([np.asarray(hits, dtype=int) for hits in found])])
-    return np.concatenate(which), np.concatenate(face)
+    boxes = (segments.min(axis=1), segments.max(axis=1)), (corners.min(axis=1), corners.max(axis=1))
+    found = [np.zeros((2, 0), int)]
+    for some in _by_size(half):
+        tree = cKDTree(middle[some])
+        for others in _by_size(radius):
+            reach = half[some].max() + radius[others].max() + 1e-9
+            near = tree.sparse_distance_matrix(cKDTree(centre[others]), reach, output_type="ndarray")
+            i, j = some[near["i"]], others[near["j"]]
+            meet = np.ones(i.size, bool)
+            for axis in range(3):
+                meet &= boxes[0][0][i, axis] <= boxes[1][1][j, axis]
+                meet &= boxes[1][0][j, axis] <= boxes[0][1][i, axis]
+            found.append(np.array([i[meet], j[meet]]))
+    which, face = np.concatenate(found, axis=1)
+    order = np.lexsort((face, which))
+    return which[order], face[order]
+
+
+def _by_size(sizes):
+    """Numbers of the items of each class of sizes, a factor of two wide."""
+    classes = np.ceil(np.log2(np.maximum(sizes, 1e-9))).astype(int)
+    return [np.flatnonzero(classes == k) for k in np.unique(classes)]
 
 
 def _through(segments, corners):
