@@ -14,6 +14,7 @@ place          (5, P)                a contact slave on its master: grid coordin
                                      viscous normal force [N]
 slip           (2, P)                slip of its friction spring, contravariant components [grid units]
 tool_anchor    (n, m, 7, 3)          anchors of the points of a node and its cell: tool frame; on walls: box [mm]
+spots          (k, 5)                places of the tool's sharp vertices on its sheet, see `contact.summit`
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
 row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)
 col            grid index j          runs along fibre family 2 (ply) or y (diaphragm)
@@ -154,6 +155,7 @@ class Model(NamedTuple):
     tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
     tool_boxed: bool  # whether the box's walls stand under that sheet's edges, which run along x and y
+    summits: np.ndarray  # (k, SUMMIT) sharp vertices of the tool, see `contact.summit`
     gravity: np.ndarray  # (3,) acceleration that all (scaled) masses feel [mm/s2]
     dt: float
 
@@ -167,6 +169,7 @@ class State(NamedTuple):
     place: np.ndarray
     slip: np.ndarray
     tool_anchor: np.ndarray
+    spots: np.ndarray  # (k, SPOT) where on the sheet each summit is
     press: np.ndarray  # (N,) mean contact force on each node [N]
     tension1: np.ndarray  # (N,) tension of each bar, as the last step left it [N]
     tension2: np.ndarray

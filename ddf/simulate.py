@@ -8,6 +8,7 @@ import numpy as np
 
 from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.self_search import SelfContact
+from ddf.contact.summit import PUSH
 from ddf.contact.tool import PRESS
 from ddf.dynamics.handle import held
 from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
@@ -49,6 +50,7 @@ def make_work(model: Model, members: int) -> Work:
         shell_carry=np.zeros((6, model.blocks.size, widest)),
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
         pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, PRESS)),
+        pushes=np.full((model.summits.shape[0], PUSH), -1.0),
         sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
         rest=np.zeros(model.exposed.size, np.int8), idle=np.zeros(model.pairs.size, bool),
         bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),

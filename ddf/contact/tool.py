@@ -135,13 +135,13 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
 
 
 @njit(**FAST)
-def _rare_point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
+def push_point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     """`_point`, compiled once for where it is not worth a copy of its own."""
     return _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give)
 
 
 @njit(**INLINE)
-def _put(row, weight, give):
+def put(row, weight, give):
     """Add a point's share to a node's row of press (PRESS,)."""
     for c in range(PRESS):
         row[c] += weight * give[c]
@@ -191,9 +191,9 @@ def _walls(x, v, f, inverse, area, k, c, dt, i, j, anchors, out, give, press, pr
         ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
         normal = (inward, 0.0, 0.0) if axis == 0 else (0.0, inward, 0.0)
         a = area[i, j]
-        if _rare_point(p, u, ahead, d, normal, 0.0, k * a, c * a, 0.0, dt, anchor, out, give):
+        if push_point(p, u, ahead, d, normal, 0.0, k * a, c * a, 0.0, dt, anchor, out, give):
             pressed[i] = True
-            _put(press[i, j], 1.0, give)
+            put(press[i, j], 1.0, give)
 
 
 @njit(**FAST)
@@ -233,7 +233,7 @@ def tool_forces(
             if _point(p, u, ahead, p[2], up, offset, k_a, c_a, rough, dt, anchors[i, j, 0], out, give):
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(press[i, j], 1.0, give)
+                put(press[i, j], 1.0, give)
         k = min(i + 1, n - 1)
         for j in range(m):
             if sleep[i, j] > 0:
@@ -273,19 +273,19 @@ def tool_forces(
                     continue
                 work += give[2] * speed * dt
                 pressed[i] = True
-                _put(press[i, j], (1 - r) * (1 - s), give)
+                put(press[i, j], (1 - r) * (1 - s), give)
                 if s > 0.0:
-                    _put(press[i, l], (1 - r) * s, give)
+                    put(press[i, l], (1 - r) * s, give)
                 if r == 0.0:
                     continue
                 if k < high:
                     pressed[k] = True
-                    _put(press[k, j], r * (1 - s), give)
-                    _put(press[k, l], r * s, give)
+                    put(press[k, j], r * (1 - s), give)
+                    put(press[k, l], r * s, give)
                 else:
                     carried = True
-                    _put(carry[j], r * (1 - s), give)
-                    _put(carry[l], r * s, give)
+                    put(carry[j], r * (1 - s), give)
+                    put(carry[l], r * s, give)
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
     return work, carried

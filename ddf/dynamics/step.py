@@ -31,6 +31,7 @@ from numba import njit
 
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
 from ddf.contact.self_contact import drop_near
+from ddf.contact.summit import add_pushes, summit_forces
 from ddf.contact.tool import PRESS, settle_row, tool_forces
 from ddf.dynamics.team import barrier, draw
 from ddf.elements.bending import bending_forces
@@ -89,6 +90,7 @@ class Work(NamedTuple):
     shell_carry: np.ndarray  # (6, blocks, widest) row of the next block, from a shell ply's cells: forces, pulls
     press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
     pressed: np.ndarray  # (n,) bool: rows of press in use
+    pushes: np.ndarray  # (k, PUSH) what the tool's summits do, see `contact.summit`
     give: np.ndarray  # (members, PRESS)
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
@@ -219,6 +221,13 @@ def _packed(pool, sheet):
     return pool[4 * sheet.node : 4 * (sheet.node + n)].reshape((sheet.rows, sheet.cols, 4))
 
 
+@njit(**INLINE)
+def _centres(model, sheet):
+    """Centres of a sheet's contact patches (rows, cols, 2)."""
+    n = sheet.rows * sheet.cols
+    return model.centre[2 * sheet.node : 2 * (sheet.node + n)].reshape((sheet.rows, sheet.cols, 2))
+
+
 @njit(**FAST)
 def _pack(model, state, work, b):
     """Pack the positions and velocities of a block's rows for contact."""
@@ -256,9 +265,7 @@ def _layers(model, state, work, member, b, dt, reach):
             vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), normal,
             scalars(model.area, slave),
             _packed(work.packed, master), _packed(work.rates, master), scalars(model.cell, master),
-            model.centre[2 * master.node : 2 * (master.node + master.rows * master.cols)].reshape(
-                (master.rows, master.cols, 2)
-            ),
+            _centres(model, master),
             place, slip, rest, buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
         )  # fmt: skip
     state.springs[b, NORMAL_SPRING] = out[0]
@@ -287,6 +294,13 @@ def _tool(model, state, work, member, row, b, dt, reach):
         (row[TOOL_Z], row[TOOL_SPEED]), reach, dt, state.tool_anchor, work.sleep, block.low, block.high, out,
         work.give[member],
     )  # fmt: skip
+    if block.low == 0 and model.summits.shape[0] > 0:
+        done += summit_forces(
+            _packed(work.packed, sheet).reshape(4 * sheet.rows * sheet.cols),
+            _packed(work.rates, sheet).reshape(4 * sheet.rows * sheet.cols),
+            vectors(state.f, sheet), scalars(model.inverse_mass, sheet), _centres(model, sheet), dx, dy, law,
+            (row[TOOL_Z], row[TOOL_SPEED]), dt, model.summits, state.spots, work.pushes, out, work.give[member],
+        )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]
     state.ledger[b, TOOL_FRICTION] += out[2]
@@ -334,6 +348,7 @@ def _settle_tool(model, state, work, row, b):
             for c in range(PRESS):
                 press[block.low, j, c] += carry[j, c]
         work.pressed[block.low] = True
+    add_pushes(press, work.pressed, work.pushes, block.low, block.high)
     for i in range(block.low, block.high):
         if work.pressed[i]:
             done, lost = settle_row(

@@ -20,6 +20,7 @@ from ddf.build.pairs import first_places
 from ddf.build.pools import corner_sum, row_blocks
 from ddf.case import HyperelasticMaterial, WovenMaterial
 from ddf.contact.patch import patch_centres
+from ddf.contact.summit import SUMMIT
 from ddf.dynamics import timestep
 from ddf.elements.bending import tangent_weights
 from ddf.loads.path import LoadPath, smooth_ramp
@@ -92,7 +93,8 @@ def assemble(
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
         tool_offset=0.5 * sheets[0].thickness, tool_stiffness=stiff, tool_damping=tool_damping, tool_mass=mass0,
-        tool_friction=tool.friction if tool else 0.0, tool_boxed=False, gravity=np.asarray(gravity, dtype=float),
+        tool_friction=tool.friction if tool else 0.0, tool_boxed=False,
+        summits=np.zeros((0, SUMMIT)), gravity=np.asarray(gravity, dtype=float),
         dt=_step(sheets, touches),
     )  # fmt: skip
     x = np.concatenate([s.start.ravel() for s in sheets])
