@@ -41,7 +41,7 @@ GRAZING = 0.2  # cosine between axis and normal below which the sheet is not met
 
 @njit(**FAST)
 def _look(y, centre, spot, place):
-    """From a spot on the surface to a place S: centre of the patch, normal, n.(x - S), Newton step to what is closest."""
+    """From a spot on the surface to S: centre of the patch, normal, n.(x - S), and Newton step to the closest place."""
     n, m = centre.shape[0], centre.shape[1]
     i, j = min(max(int(spot[0] + 0.5), 0), n - 1), min(max(int(spot[1] + 0.5), 0), m - 1)
     p, q = np.int64(centre[i, j, 0]), np.int64(centre[i, j, 1])
