@@ -43,11 +43,11 @@ def test_the_cheapest_rung_that_is_accurate_enough(auto):
 
 
 def test_rungs_that_the_scene_does_not_bear_are_left_out_and_say_why(auto):
-    choice = choose(auto("tetrahedron-double", "target.accuracy_mm=5.0", "tool.fillet_mm=3.0"), 2)
+    choice = choose(auto("tetrahedron-double", "target.accuracy_mm=5.0", "tool.fillet_mm=2.0"), 2)
     reasons = {step.rung.name: step.obstacle for step in choice.steps}
     assert "each ply by itself" in reasons["net"]
-    assert "fillets of 3 mm" in reasons["coarsest"]
-    assert "fillets of 3 mm" in reasons["coarse"]
+    assert "tightest wrinkles" in reasons["coarsest"]
+    assert "fillet_mm: 2 is far below the diaphragm's element of 5" in reasons["coarse"]
     assert choice.chosen.rung.name == "medium"
     text = "\n".join(choice.lines())
     assert "not net: a net drapes each ply by itself" in text
@@ -57,7 +57,7 @@ def test_rungs_that_the_scene_does_not_bear_are_left_out_and_say_why(auto):
 def test_no_valid_rung_is_an_error_that_lists_all(auto):
     with pytest.raises(UsageError, match="no rung of the ladder is valid") as caught:
         choose(auto("tetrahedron-double", "target.seconds=60", "tool.fillet_mm=0.5"), 2)
-    assert "fine-slow: elements of 2 mm" in str(caught.value)
+    assert "fine-slow: fillet_mm: 0.5 is far below" in str(caught.value)
 
 
 def test_a_run_says_which_rung_it_stands_on_and_goes_on_with_it(auto, tmp_path):
