@@ -1,0 +1,6 @@
+"""From a case to a scene: meshes, masses, contact pairs, step."""
+
+from ddf.build.loads import load_path
+from ddf.build.scene import build_scene, state_at_rest
+
+__all__ = ["build_scene", "load_path", "state_at_rest"]
