@@ -17,7 +17,7 @@ from ddf.kinematic.drape import Drape, NetError, drape_ply
 from ddf.mesh.distance import DistanceField
 from ddf.mesh.ply import PlyMesh
 from ddf.mesh.tool import TriangleMesh
-from ddf.metrics import PlySurface, WrinkleResult, fibre_strain_range, outline_numbers, shear_angle, shear_statistics
+from ddf.metrics import PlySurface, fibre_strain_range, outline_numbers, shear_angle, shear_statistics
 from ddf.metrics.surface import cell_area
 from ddf.output.folder import RunFolder
 from ddf.output.snapshot import SheetSnapshot, extrapolated
@@ -187,8 +187,7 @@ def _draw(out: RunFolder, surfaces: list[PlySurface], tool: TriangleMesh | None)
         save_picture(out, f"formed-{surface.name}", draw_formed(sheet, surface))
         save_picture(out, f"shear-{surface.name}", draw_shear(surface))
         if surface.outline:
-            smooth = WrinkleResult([], np.zeros_like(surface.cell_fraction, bool), np.zeros(surface.shape), 0.0)
-            save_picture(out, f"outline-{surface.name}", draw_outline(surface, smooth, tool))
+            save_picture(out, f"outline-{surface.name}", draw_outline(surface, None, tool))
 
 
 def _info(case: Case, drapes: list[Drape], wall: dict[str, float], failures: list[NetError]) -> dict[str, Any]:

@@ -75,10 +75,10 @@ def draw_pictures(scene: Scene, out: RunFolder, surfaces: list[PlySurface], wrin
         if scene.tool_mesh is not None:
             save_picture(out, f"distance-{surface.name}", draw_distance(surface))
     run, top = open_run(out.path), surfaces[-1].name
-    save_picture(out, "energies", draw_energies(run.history()))
+    save_picture(out, "energies", draw_energies(run.history(), scene.path))
     if (out / f"{top}.pvd").is_file():
         times = [time for time, _ in run.frames(top)]
-        ends = [(float(end), int(np.argmin(np.abs(np.array(times) - end)))) for end in scene.path.time[1:]]
+        ends = [(min(end, times[-1]), int(np.argmin(np.abs(np.array(times) - end)))) for end in scene.path.time[1:]]
         frames = [(end, formed_ply(run, top, number)) for end, number in ends]
         save_picture(out, "stages", draw_stages(scene.path, frames))
 

@@ -12,8 +12,8 @@ from ddf.build.pairs import contact_pairs
 from ddf.build.pools import node_pools, row_blocks
 from ddf.build.sheets import sheet_records
 from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nominal_height
-from ddf.build.summits import NO_SPOTS, first_spots, summit_records
 from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
+from ddf.build.summits import NO_SPOTS, first_spots, summit_records
 from ddf.case import Case, hyperelastic_material
 from ddf.contact.tool import FREE, POINTS
 from ddf.dynamics import timestep

@@ -14,12 +14,12 @@ from ddf.mesh.tool import TriangleMesh
 FloatArray = NDArray[np.float64]
 
 BLIND = 0.4
-"""How near to a vertex the sheet may have no point of contact, in cells: nodes, middles and centres are 0.35 away at most."""
+"""How near to a vertex the sheet may have no point of contact, in cells: its points are 0.35 away at most."""
 NO_SPOTS: FloatArray = np.zeros((0, SPOT))
 
 
 def summit_records(mesh: TriangleMesh | None, element_mm: float, offset_mm: float) -> FloatArray:
-    """Columns of `contact.summit` (k, SUMMIT) for a sheet with elements of this size and its mid-surface this far off."""
+    """Columns of `contact.summit` (k, SUMMIT) for a sheet with such elements and its mid-surface so far off."""
     if mesh is None:
         return np.zeros((0, SUMMIT))
     places, axes = summits(mesh, BLIND * element_mm)

@@ -12,7 +12,10 @@ from ddf.commands.common import CASE, SET, say
 @click.command()
 @CASE
 @SET
-def check(case: Path, overrides: tuple[str, ...]) -> None:
+@click.option(
+    "--threads", type=click.IntRange(1, 1024), help="Threads of the run  [default: the case's, else all cores]"
+)
+def check(case: Path, overrides: tuple[str, ...], threads: int | None) -> None:
     """Check a case: meshes, physics that is on, step, steps, memory; nothing is run.
 
     Example: ddf check cases/tetrahedron-0-90.toml
@@ -27,7 +30,7 @@ def check(case: Path, overrides: tuple[str, ...]) -> None:
         from ddf.fidelity import choose
         from ddf.run import default_threads
 
-        choice = choose(loaded, loaded.solver.threads or default_threads())
+        choice = choose(loaded, threads or loaded.solver.threads or default_threads())
         click.echo("\n".join([*choice.lines(), ""]))
         loaded = choice.case
     if loaded.model == "kinematic":

@@ -93,9 +93,11 @@ def compare_runs(
         outlines = [_outline(run, ply) for run in runs]
         wrinkles = [[row for row in run.wrinkles() if row["ply"] == ply] for run in runs]
         shear = shear_difference(surfaces[0], surfaces[1])
+        nets = [label for run, label in zip(runs, labels, strict=True) if not _knows_wrinkles(run, ply)]
+        notes += [f"{label} is a net: it knows nothing of wrinkles" for label in nets]
         plies.append(PlyComparison(
             ply, _numbers(runs, ply), outline_distances(outlines[0], outlines[1]) if all(outlines) else None,
-            match_wrinkles(ply, wrinkles[0], wrinkles[1]), shear,
+            [] if nets else match_wrinkles(ply, wrinkles[0], wrinkles[1]), shear,
         ))  # fmt: skip
         shown = points if ply == (profile_ply or common[-1]) else None
         if shown is not None:
@@ -106,6 +108,10 @@ def compare_runs(
     result = Comparison(labels, (first, second), plies, measured, notes)
     _write(out, result)
     return result
+
+
+def _knows_wrinkles(run: FinishedRun, ply: str) -> bool:
+    return any("wrinkle_count" in table for table in run.metrics["plies"] if table["ply"] == ply)
 
 
 def _labels(first: Path, second: Path) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-REACH_MM = 25.0  # wrinkles farther apart are not the same site
+REACH_MM, ASTRIDE_DEG = 25.0, 45.0  # wrinkles farther apart, or that cross at more, are not the same site
 SAMPLES = 11
 
 
@@ -53,13 +53,23 @@ def apart(first: Row, second: Row) -> float:
     return float(np.linalg.norm(a - b[0] - share[:, None] * edge, axis=1).mean())
 
 
+def across(first: Row, second: Row) -> float:
+    """Angle between the directions of two wrinkles [deg], 0 to 90."""
+    turn = abs(first["direction_deg"] - second["direction_deg"]) % 180.0
+    return float(min(turn, 180.0 - turn))
+
+
+def _cost(first: Row, second: Row) -> float:
+    return apart(first, second) if across(first, second) <= ASTRIDE_DEG else np.inf
+
+
 def match_wrinkles(ply: str, first: list[Row], second: list[Row], reach_mm: float = REACH_MM) -> list[Site]:
-    """Pair the wrinkles of one ply one to one so that the distances sum to least, none over `reach_mm`.
+    """Pair the wrinkles of one ply one to one so that the distances sum to least, none over `reach_mm` or ASTRIDE_DEG.
 
     Pairs first, by falling amplitude; then the wrinkles that only one run has.
     """
     sites = []
-    cost = np.array([[apart(a, b) for b in second] for a in first]).reshape(len(first), len(second))
+    cost = np.array([[_cost(a, b) for b in second] for a in first]).reshape(len(first), len(second))
     # leaving a pair apart costs as much as a pair at the limit, so no pair beyond it is ever worth while
     rows, columns = linear_sum_assignment(np.minimum(cost, reach_mm)) if cost.size else ([], [])
     left, right = set(range(len(first))), set(range(len(second)))

@@ -38,6 +38,7 @@ class Rung:
 
 LADDER = (
     Rung("net", None, 0.0, 1.0, 3.05),
+    Rung("quick", 4.0, 5.0, 0.5, 0.49),
     Rung("coarsest", 6.0, 7.5, 1.0, 0.44),
     Rung("coarse", 4.0, 5.0, 1.0, 0.25),
     Rung("medium", 3.0, 3.75, 1.0, 0.21),

@@ -10,7 +10,7 @@ import numpy as np
 from ddf.model import sheet_scalars, sheet_vectors
 from ddf.monitors.crossings import self_crossings
 from ddf.monitors.energy import Energies
-from ddf.monitors.layers import deep_share
+from ddf.monitors.layers import DEEP, depth_in_layers
 from ddf.monitors.stability import fibre_stretch
 from ddf.monitors.zigzag import zigzag_share
 from ddf.scene import Scene
@@ -119,14 +119,18 @@ def audit(
     ]
     checks.append(crossing_check(sum(self_crossings(scene).values())))
     if scene.model.pairs.size:
-        deep = 100.0 * deep_share(scene)
-        checks.append(_check("nodes deep in the next layer", deep, 1.0, "% of a sheet", "contact of layers was stiff"))
+        deep, deepest = depth_in_layers(scene)
+        meaning = "contact of layers was stiff"
+        checks.append(_check("nodes deep in the next layer", 100.0 * deep, 1.0, "% of a sheet", meaning))
+        meaning = "layers lie in their order everywhere; over 100 % a node is through the next layer"
+        name = "deepest node in the next layer"
+        checks.append(_check(name, 100.0 * deepest, 100.0 * DEEP, "% of their distance", meaning))
     if scene.tool_field is not None:
         peak = 100.0 * peak_kinetic / max(energy.total_strain, 1e-12)
-        meaning = "inertia did not shape the part"
+        meaning = "sheets were not thrown on the tool; slower loads may still change the part"
         checks.append(_check("largest kinetic over final internal energy", peak, 30.0, "%", meaning))
         inside = ply_inside_tool(scene, time)
-        checks.append(_check("deepest place of a ply in the tool", inside, 0.5, "mm", "layers lie in their order"))
+        checks.append(_check("deepest place of a ply in the tool", inside, 0.5, "mm", "no ply is in the tool"))
     touching, depth = self_contact(scene)
     if touching:
         meaning = f"folds that close keep their thickness ({touching} nodes touch their own sheet)"

@@ -17,13 +17,16 @@ NEAR = 4.0
 """A node farther from the place it is followed at than this many of these distances is somewhere else."""
 
 
-def deep_share(scene: Scene) -> float:
-    """Share of the followed nodes over another sheet that are deeper in it than DEEP of their distance, the worst pair.
+def depth_in_layers(scene: Scene) -> tuple[float, float]:
+    """How deep nodes are in the sheet beside them: two numbers, each of its worst pair.
+
+    The share of the followed nodes over another sheet that are deeper in it than DEEP of the distance at which both
+    touch; and the deepest of them, over that distance: more than 1 is through it.
 
     Signed distance d = sign r.n from the surface of `contact.patch` at the place (u, v) that contact keeps: also of
     nodes that contact has lost.
     """
-    worst = 0.0
+    worst = deepest = 0.0
     for pair in scene.model.pairs:
         slave, master = int(pair["slave"]), int(pair["master"])
         x, y = sheet_vectors(scene.model, scene.state.x, slave), sheet_vectors(scene.model, scene.state.x, master)
@@ -41,9 +44,10 @@ def deep_share(scene: Scene) -> float:
         away = x.reshape(3, nodes)[:, inside] - surface
         offset = float(pair["offset"])
         near = (middle[:, 0] >= 0) & (np.linalg.norm(away, axis=0) < NEAR * offset)
-        deep = near & (float(pair["sign"]) * (away * normal).sum(axis=0) < (1.0 - DEEP) * offset)
-        worst = max(worst, float(deep.sum()) / max(int(inside.sum()), 1))
-    return worst
+        depth = np.where(near, 1.0 - float(pair["sign"]) * (away * normal).sum(axis=0) / offset, 0.0)
+        worst = max(worst, float((depth > DEEP).sum()) / max(int(inside.sum()), 1))
+        deepest = max(deepest, float(depth.max(initial=0.0)))
+    return worst, deepest
 
 
 def _surface(y: Array, middle: NDArray[np.int32], t: Array) -> tuple[Array, Array]:

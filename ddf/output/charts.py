@@ -17,8 +17,8 @@ from ddf.output.snapshot import SheetSnapshot
 Columns = Mapping[str, NDArray[Any]]
 
 
-def draw_energies(history: Columns) -> Any:
-    """Energies [mJ] over process time, from the columns of history.csv; below, ratios [%]."""
+def draw_energies(history: Columns, path: LoadPath) -> Any:
+    """Energies [mJ] over process time, from the columns of history.csv; below, ratios [%]; stages of the load path."""
     figure = figures.new_figure(9.0, 6.6)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1])
     time = history["time_s"]
@@ -33,7 +33,7 @@ def draw_energies(history: Columns) -> Any:
     lower.semilogy(time, error, color=figures.COLOURS[0], linewidth=1.2, label="|energy error|")
     lower.set(xlabel="process time [s]", ylabel="ratio [%]", ylim=(1e-3, 1e3))
     lower.legend(fontsize=figures.NOTE_PT, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    _mark_stages((upper, lower), time, history["stage"])
+    _mark_stages((upper, lower), path, float(time[-1]))
     for axes in (upper, lower):
         axes.grid(color="#e5e8eb", linewidth=0.6)
         axes.tick_params(colors=figures.MUTED, labelsize=figures.NOTE_PT)
@@ -60,18 +60,17 @@ def _energy_lines(history: Columns) -> dict[str, NDArray[Any]]:
     return lines
 
 
-def _mark_stages(axes: Sequence[Any], time: NDArray[Any], stages: NDArray[Any]) -> None:
-    """Lines where a stage ends, and the names of the stages over the upper axes."""
-    starts = [0, *(np.flatnonzero(stages[1:] != stages[:-1]) + 1).tolist(), len(stages)]
-    edges = [0.0, *(float(time[k - 1]) for k in starts[1:])]
+def _mark_stages(axes: Sequence[Any], path: LoadPath, end: float) -> None:
+    """Lines where a stage ends, and the names of the stages that began before `end` [s] over the upper axes."""
     for one in axes:
-        for edge in edges[1:-1]:
+        for edge in path.time[1:-1][path.time[1:-1] < end]:
             one.axvline(edge, color=figures.MUTED, linewidth=0.8, linestyle=(0, (4, 3)))
-    for number, (edge, first) in enumerate(zip(edges[:-1], starts[:-1], strict=True)):
-        axes[0].text(
-            edge, 1.012 if number % 2 == 0 else 1.06, str(stages[first]), transform=axes[0].get_xaxis_transform(),
-            ha="left", va="bottom", fontsize=figures.NOTE_PT, color=figures.MUTED,
-        )  # fmt: skip
+    for number, (edge, name) in enumerate(zip(path.time[:-1], path.names, strict=True)):
+        if edge < end:
+            axes[0].text(
+                edge, 1.012 if number % 2 == 0 else 1.06, name, transform=axes[0].get_xaxis_transform(),
+                ha="left", va="bottom", fontsize=figures.NOTE_PT, color=figures.MUTED,
+            )  # fmt: skip
 
 
 def draw_stages(path: LoadPath, frames: Sequence[tuple[float, PlySurface]]) -> Any:

@@ -62,24 +62,29 @@ def draw_shear(surface: PlySurface, box: Box | None = None) -> Any:
 
 
 def draw_distance(surface: PlySurface, box: Box | None = None) -> Any:
-    """Map of the distance to tool and platform [mm], 0 where the ply conforms; range -1 to 10 mm, red below."""
-    figure, axes, view, frame = _ply_map(surface, f"{surface.name}: distance to the tool", box)
+    """Map of the gap to tool and platform [mm], 0 where the ply conforms; range -1 to 10 mm, red below 0."""
+    figure, axes, view, frame = _ply_map(surface, f"{surface.name}: gap to the tool", box)
     image = view.nodes(fill_inactive(gap_field(surface), surface.active))
     bar = coloured(figure, axes, view, surface, image, "YlGnBu", DISTANCE_RANGE_MM, "both", INSIDE)
-    bar.set_label("distance to tool and platform [mm], 0: conforms, red: inside the tool", fontsize=figures.LABEL_PT)
+    bar.set_label(
+        "gap to tool and platform [mm]; 0: conforms, red: nearer than the layers between are thick",
+        fontsize=figures.LABEL_PT,
+    )
     figures.scale_bar(axes, frame)
     return figure
 
 
-def draw_outline(surface: PlySurface, result: WrinkleResult, tool: TriangleMesh | None = None) -> Any:
-    """Initial and formed outline, the tool's base, and the wrinkles: width by amplitude, numbered."""
+def draw_outline(surface: PlySurface, result: WrinkleResult | None, tool: TriangleMesh | None = None) -> Any:
+    """Initial and formed outline, the tool's base, and the wrinkles: width by amplitude, numbered; None: not known."""
     from matplotlib.collections import LineCollection
 
     profile = boundary_profile(surface)
     points = np.concatenate([*profile.initial, *profile.deformed]).T
     frame = figures.view_box(points)
     figure = figures.new_figure(7.4, 8.3)
-    axes = figures.plan_axes(figure, frame, f"{surface.name}: outline and {result.count} wrinkles")
+    axes = figures.plan_axes(
+        figure, frame, f"{surface.name}: outline" + ("" if result is None else f" and {result.count} wrinkles")
+    )
     for loops, style in (
         (
             profile.initial,
@@ -93,7 +98,8 @@ def draw_outline(surface: PlySurface, result: WrinkleResult, tool: TriangleMesh 
     if tool is not None:
         segments = base_segments(tool)
         axes.add_collection(LineCollection(list(segments), colors="#009e73", linewidths=1.2, label="tool at its base"))
-    _draw_wrinkles(axes, result)
+    if result is not None:
+        _draw_wrinkles(axes, result)
     figures.scale_bar(axes, frame)
     figure.legend(
         *axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=figures.NOTE_PT, frameon=False

@@ -15,7 +15,7 @@ TEMPLATE = Path(__file__).parent / "report.html.j2"
 CAPTIONS = {
     "formed-": "from above",
     "shear-": "shear angle",
-    "distance-": "distance to the tool",
+    "distance-": "gap to the tool",
     "outline-": "outline and wrinkles",
     "stages": "the stages",
     "energies": "energies over process time",

@@ -137,7 +137,7 @@ def _sheet(scene: Scene, state: State, k: int) -> SheetSnapshot:
     v = sheet_vectors(model, state.v, k)
     points = np.ascontiguousarray(x.reshape(3, -1).T)
     gap = scene.obstacle_distance(points, float(state.clock[1])) - middle_offset_mm(scene, k)
-    fields = {"distance_to_tool_mm": gap.reshape(x.shape[1:]), "speed_mm_s": np.sqrt((v * v).sum(axis=0))}
+    fields = {"gap_to_tool_mm": gap.reshape(x.shape[1:]), "speed_mm_s": np.sqrt((v * v).sum(axis=0))}
     if info.kind == "diaphragm":
         cells = diaphragm_fields(scene, x, k)
         return SheetSnapshot(info.name, info.kind, x, np.ones_like(cells["thickness_mm"], bool), fields, cells)

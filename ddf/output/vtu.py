@@ -98,7 +98,7 @@ def write_vtu(
     cell_fields: dict[str, NDArray[Any]],
     time_s: float,
 ) -> None:
-    """Write triangles (q, 3) or quadrilaterals (q, 4) of points (k, 3) [mm], appended binary with LZ4."""
+    """Write triangles (q, 3) or quadrilaterals (q, 4) of points (k, 3) [mm], appended binary with zlib."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
@@ -129,7 +129,8 @@ def write_vtu(
     writer.SetInputData(grid)
     writer.SetDataModeToAppended()
     writer.EncodeAppendedDataOff()
-    writer.SetCompressorTypeToLZ4()
+    writer.SetCompressorTypeToZLib()  # meshio reads no other; at level 1 as quick as LZ4 and smaller
+    writer.SetCompressionLevel(1)
     with replacing(path) as temporary:
         writer.SetFileName(str(temporary))
         if writer.Write() != 1 or writer.GetErrorCode() != 0:

@@ -27,16 +27,20 @@ def swept_keys(entries: list[Entry]) -> list[str]:
 
 
 def sweep_rows(folder: SweepFolder, entries: list[Entry], outcomes: dict[str, Outcome]) -> list[dict[str, Any]]:
-    """Rows: case, state, reason, wall time, swept keys, ply, metrics; None where something is not known."""
+    """Rows: case, state, reason, wall time, swept keys, checks that failed, ply, metrics; None: not known."""
     rows = []
     for entry in entries:
         outcome = outcomes[entry.name]
         head = {"case": entry.name, "state": outcome.state, "reason": outcome.reason.replace("\n", " "),
                 "wall_s": round(outcome.wall_s, 1)}  # fmt: skip
         head |= {key: entry.changes.get(key) for key in swept_keys(entries)}
-        tables = open_run(folder.run_folder(entry.name)).metrics["plies"] if outcome.state == FINISHED else [{}]
+        tables: list[dict[str, Any]] = [{}]
+        missed = None
+        if outcome.state == FINISHED:
+            run = open_run(folder.run_folder(entry.name))
+            tables, missed = run.metrics["plies"], "; ".join(c["name"] for c in run.info["audit"] if not c["ok"])
         for ply in tables:
-            row = head | {"ply": ply.get("ply")} | {key: ply.get(key) for key in METRICS}
+            row = head | {"audit_misses": missed, "ply": ply.get("ply")} | {key: ply.get(key) for key in METRICS}
             for key in DRAW_IN:
                 values = ply.get(key.replace("_mean", "")) or {}
                 row[key] = float(np.mean(list(values.values()))) if values else None

@@ -68,7 +68,7 @@ def test_a_run_says_which_rung_it_stands_on_and_goes_on_with_it(auto, tmp_path):
     assert result.notes[0].startswith("fidelity: net")
     record = json.loads((tmp_path / "run/run.json").read_text())["fidelity"]
     assert record["rung"] == "net"
-    assert len(record["ladder"]) == 6
+    assert len(record["ladder"]) == 7
     resolved = load_case(tmp_path / "run/case.resolved.toml")
     assert (resolved.fidelity, resolved.model) == ("as-given", "kinematic")
     # gone on with, the rung stays, whatever the target would give now

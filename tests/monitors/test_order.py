@@ -6,7 +6,7 @@ from crossings import crossings
 
 from ddf.model import sheet_vectors
 from ddf.monitors.crossings import crossings_of, self_crossings
-from ddf.monitors.layers import deep_share
+from ddf.monitors.layers import depth_in_layers
 from ddf.monitors.zigzag import zigzag_share
 
 COARSE = ("plies.0.element_mm=25", "diaphragms.element_mm=30")
@@ -18,7 +18,7 @@ def scene(make_scene):
 
 
 def test_a_flat_stack_is_in_order(scene):
-    assert deep_share(scene) == 0.0
+    assert depth_in_layers(scene)[0] == 0.0
     assert zigzag_share(scene) == 0.0
     assert self_crossings(scene) == {}
 
@@ -28,7 +28,9 @@ def test_a_ply_pressed_into_or_through_the_diaphragm_is_deep_in_it(scene, lowere
     bottom, ply = (sheet_vectors(scene.model, scene.state.x, k) for k in (0, 1))
     offset = float(scene.model.pairs["offset"][0])
     ply[2] = bottom[2].mean() + (1.0 - lowered) * offset
-    assert deep_share(scene) == pytest.approx(share, abs=0.02)
+    found, deepest = depth_in_layers(scene)
+    assert found == pytest.approx(share, abs=0.02)
+    assert deepest == pytest.approx(lowered, abs=0.1)
 
 
 def test_nodes_up_and_down_in_turn_are_a_zigzag_and_a_wave_of_eight_elements_is_none(scene):

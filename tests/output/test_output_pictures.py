@@ -74,7 +74,7 @@ def test_every_picture_is_drawn_and_the_report_holds_it(scene, folder, monkeypat
         "shear-ply-2": plots.draw_shear(surface),
         "distance-ply-2": plots.draw_distance(surface),
         "outline-ply-2": plots.draw_outline(surface, one_wrinkle(), scene.tool_mesh),
-        "energies": charts.draw_energies(FinishedRun(folder.path).history()),
+        "energies": charts.draw_energies(FinishedRun(folder.path).history(), scene.path),
         "stages": charts.draw_stages(scene.path, [(0.01, surface), (0.03, surface)]),
     }
     for name, figure in pictures.items():
