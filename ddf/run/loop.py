@@ -203,10 +203,11 @@ class Runner:
             self._end_if_settled()
         if sim.step == self.steps:  # the frames that an early end leaves out are one
             self.frame_times[self.frames_done :] = [sim.time][: len(self.frame_times) - self.frames_done]
-        while self.frames_done < len(self.frame_times) and sim.time >= self.frame_times[self.frames_done] - 1e-12:
+        due = int(np.searchsorted(self.frame_times, sim.time + 1e-12, side="right"))
+        if due > self.frames_done:  # several may be due at a time: they are one
             if self.frames is not None:
                 self.frames.write(take_snapshot(scene, scene.state))
-            self.frames_done += 1
+            self.frames_done = due
 
     def _is_history_step(self) -> bool:
         """Whether energies are looked at now."""
