@@ -27,7 +27,7 @@ SMALL = [
     "process.stages.0.duration_s=0.004",
     "process.stages.1.duration_s=0.012",
     "process.stages.2.duration_s=0.004",
-    "process.stages.3.duration_s=0.002",
+    "process.stages.3.duration_s=0.004",
     "process.settled_percent=0",
     "output.frames_per_stage=2",
     "solver.energy_error_limit_percent=100",
@@ -147,6 +147,20 @@ def test_progress_is_true_and_memory_does_not_grow(case, tmp_path, monkeypatch):
     apart = np.abs(np.subtract.outer(times, history["time_s"])).min(axis=1)
     assert apart.max() < 1e-6 * told[0].step_s * told[-1].steps  # every frame is of a step that history has too
     assert np.median(resident[-50:]) - np.median(resident[len(resident) // 4 :][:50]) < 8.0  # MiB
+
+
+def test_frames_due_between_two_looks_at_the_state_are_one(case, tmp_path):
+    often = case.output.model_copy(update={"frames_per_stage": 40, "pictures": False})
+    run = open_run(run_case(case.model_copy(update={"output": often}), tmp_path / "run", threads=1).folder)
+    times = np.array([time_s for time_s, _ in run.frames("ply-1")])
+    assert list(times) == [time_s for time_s, _ in run.frames("bottom-diaphragm")]
+    assert (np.diff(times) > 0).all()
+    look = case.solver.check_interval_steps * run.history()["step_s"][-1]
+    assert len(times) == pytest.approx(1 + times[-1] / look, abs=1)
+    edges = np.cumsum([0.0, *[stage.duration_s for stage in case.process.stages]])
+    due = np.interp(np.arange(1, 40 * (len(edges) - 1)) / 40, np.arange(len(edges)), edges)
+    late = times[np.searchsorted(times, due - 1e-9)] - due  # of the frame that shows what was due then
+    assert late.max() < look
 
 
 def test_a_folder_in_use_is_refused(whole, case):
