@@ -12,7 +12,7 @@ x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] w
                                      sheet k is the slice 3*node : 3*(node + rows*cols) as (3, rows, cols)
 place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
                                      viscous normal force [N]
-slip           (2, P)                slip of its friction spring, contravariant components [grid units]
+slip           (2, P)                slip of its friction spring, along the master's grid lines and across [mm]
 tool_anchor    (n, m, 7, 3)          anchors of the points of a node and its cell: tool frame; on walls: box [mm]
 spots          (k, 5)                places of the tool's sharp vertices on its sheet, see `contact.summit`
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]

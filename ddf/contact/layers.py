@@ -9,6 +9,7 @@ surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x
            U = A c (1/2 K g^2 + (H - 1)/2 K <-g - HARD offset>^2),  <.> positive part, c: cover
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
     slip   s = s^a S_a;                       friction spring of stiffness 0.3 K A, Coulomb limit mu N
+           kept along S_1 and across it [mm]: it turns with the master, which does not stretch it
     rates  of gap and slip are those on which the forces below do work: with w = v_s - (N_k + N_k,a r^a) v_k,
            g' = sign n.w,  s'_a = w.S_a + d n.(N_k,a v_k)
 
@@ -18,8 +19,9 @@ The force f on the slave is balanced on the master's nodes by
 
 Sum f_k = -f since sum N_k,a = 0; and because sum N_k,a x_k = S_a the moments cancel exactly too, for
 r x f = r^a S_a x f + d n x f, whether or not the projection has converged. Without the second term the two
-forces lie a gap apart and every contact would be a couple. Slip is kept as the history s^a and not as the way of
-the place from an anchor: in folds as tight as the contact distance places move where nothing slips.
+forces lie a gap apart and every contact would be a couple. Slip is a history and not the way of the place from an
+anchor: in folds as tight as the contact distance places move where nothing slips. Nor are its components s^a kept: a
+master that stretched took what slip was held along, and gave the springs energy that no force had worked for.
 
 A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge U
 fades to nothing (cover c, interpolated like the surface; -dU/dc c_a pushes the node off the edge): the corner of one
@@ -65,7 +67,7 @@ STRIDE = np.uint64(4 * CHUNK)
 (
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
-    AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip of the friction spring
+    AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip along S_1 and across
     COVER,  # share of the stiffness that the master's edge leaves
     BEFORE,  # depth of the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
@@ -310,7 +312,9 @@ def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
         rv = wx * vx + wy * vy + wz * vz + d * w[BV + t]
         su, sv = (gvv * ru - guv * rv) * inv, (guu * rv - guv * ru) * inv
         mx, my, mz = su * ux + sv * vx, su * uy + sv * vy, su * uz + sv * vz
-        ou, ov = w[SU + t], w[SV + t]
+        first, second = np.sqrt(guu), np.sqrt(gvv - guv * guv / guu)  # length of S_1, and of S_2 across it
+        ov = w[SV + t] / second
+        ou = w[SU + t] / first - ov * guv / guu
         tu, tv = ou + dt * su, ov + dt * sv
         px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
         kt, cs = TANGENTIAL * k, TANGENTIAL * c
@@ -321,8 +325,8 @@ def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
         stretch2 = px * px + py * py + pz * pz
         # where friction slips the spring keeps what it alone can carry
         keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if share < 1.0 else 1.0
-        w[SU + t] = keep * tu
-        w[SV + t] = keep * tv
+        w[SU + t] = keep * (tu * guu + tv * guv) / first
+        w[SV + t] = keep * tv * second
         normal += stored
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
@@ -418,7 +422,7 @@ def layer_forces(
     xs, vs, fs (3, n, m) slave; normal (n, m) gathers its normal forces [N]; xm, vm (N, M, 4) master as from
     `pack_rows`, vm with zeros for the cover; area (n, m) [mm2]; cell (N, M) area of the master's cells;
     centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
-    of the last step; slip (2, n, m) [grid units]; both updated; rest (n, m) int8: steps to rest, negative for nodes
+    of the last step; slip (2, n, m) [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes
     that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
     step [mm]; scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
     now, friction and damping loss of this step [N mm].

@@ -71,6 +71,28 @@ def test_sticking_contact_gives_back_what_it_stores(seed):
     assert energy[-1] - energy[0] == pytest.approx(work[-1], rel=0.01, abs=1e-3 * energy[0])
 
 
+def test_a_master_that_stretches_and_turns_takes_the_slip_along_but_does_not_draw_it_out():
+    """Both sheets move as one, stretched by half, sheared and turned: nothing slips, no work is done, no energy comes."""
+    u, v = np.meshgrid(np.arange(7.0), np.arange(7.0), indexing="ij")
+    xm = np.array([2.5 * u, 2.5 * v, 0.0 * u])
+    xs = np.ascontiguousarray(np.array([4.0 + 2.0 * u, 3.7 + 2.1 * v, 0.7 + 0.0 * u])[:, :4, :4])
+    scene = t.Layers(xs, xm, 2.5, t.make_pair(friction=10.0)).settle(xs, xm)
+    still = np.zeros_like(xm)
+    for _ in range(10):
+        scene.forces(xs, xm, 1e-3, rates=(np.ones_like(xs) * [[[20.0]], [[-9.0]], [[0.0]]], still))
+    held = scene.out[1]
+    first = scene.forces(xs, xm)[0]
+    assert held > 0.1
+    for part in np.linspace(0.0, 1.0, 101)[1:]:
+        c, s = np.cos(part), np.sin(part)
+        way = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ [[1 + 0.5 * part, 0.3 * part, 0], [0, 1, 0], [0, 0, 1]]
+        last = scene.forces(np.tensordot(way, xs, 1), np.tensordot(way, xm, 1))[0]
+        assert scene.out[1] == pytest.approx(held, rel=1e-9)
+    # the force has turned with the master's lines: S_1 by one radian
+    turned = np.tensordot([[c, -s, 0], [s, c, 0], [0, 0, 1]], first, 1)
+    assert np.abs(last - turned).max() < 1e-6 * np.abs(first).max()
+
+
 def test_turned_scene_has_turned_forces():
     rng = np.random.default_rng(3)
     xs, xm = t.curved_scene(rng)
