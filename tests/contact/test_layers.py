@@ -72,7 +72,7 @@ def test_sticking_contact_gives_back_what_it_stores(seed):
 
 
 def test_a_master_that_stretches_and_turns_takes_the_slip_along_but_does_not_draw_it_out():
-    """Both sheets move as one, stretched by half, sheared and turned: nothing slips, no work is done, no energy comes."""
+    """Both sheets move as one, stretched by half, sheared and turned: no work, no energy."""
     u, v = np.meshgrid(np.arange(7.0), np.arange(7.0), indexing="ij")
     xm = np.array([2.5 * u, 2.5 * v, 0.0 * u])
     xs = np.ascontiguousarray(np.array([4.0 + 2.0 * u, 3.7 + 2.1 * v, 0.7 + 0.0 * u])[:, :4, :4])
