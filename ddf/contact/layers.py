@@ -6,7 +6,7 @@ step would overshoot or have no answer, places then creep instead of jumping abo
 surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             damping C A g', penalty energy where g < 0:
-           U = A c K/2 (g^2 + 2 <-g - HARD offset>^2 + 3 <-g - HARDER offset>^2),  <.> positive part, c: cover
+           U = A c (1/2 K g^2 + (H - 1)/2 K <-g - HARD offset>^2),  <.> positive part, c: cover
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
     slip   s = s^a S_a;                       friction spring of stiffness 0.3 K A, Coulomb limit mu N
            kept along S_1 and across it [mm]: it turns with the master, which does not stretch it
@@ -44,12 +44,12 @@ from numba import njit
 from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.contact.patch import first_order, interpolate, spread, weights
 from ddf.contact.quad import add_scaled, part, quad, quad_with, store
-from ddf.jit import FAST, INLINE
+from ddf.jit import FAST
 
-HARD, HARDER = 0.2, 0.4
-"""Parts of the offset beyond which the penalty is 3 and 6 times as stiff. Only where the tool bears the stack do sheets
-come so deep: tension of the fibres presses them on ridges and apexes with some MPa. There the tool's implicit contact
-adds to the mass that the stiffness acts on; 9 times in place of 6 made energy on sharp tools at the usual step."""
+HARD, HARDENING = 0.2, 3.0
+"""Part of the offset beyond which the penalty is stiffer, and how much. Only where the tool bears the stack do sheets
+come so deep: tension of the fibres presses them on ridges and apexes with some MPa. There the tool's implicit
+contact adds to the mass that the stiffness acts on."""
 
 WHOLE_COVER = 1.0 - 1e-9  # weights add up to 1 but for rounding
 LONGEST_REST = 8
@@ -290,15 +290,8 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
     return touching
 
 
-@njit(**INLINE)
-def _spring(depth, offset):
-    """Force and energy of the penalty at a depth, over its stiffness."""
-    hard, harder = max(0.0, depth - HARD * offset), max(0.0, depth - HARDER * offset)
-    return depth + 2.0 * hard + 3.0 * harder, 0.5 * (depth * depth + 2.0 * hard * hard + 3.0 * harder * harder)
-
-
 @njit(**FAST)
-def _press(w, surface, count, sign, mu, stiffness, offset, damping, slow, dt):
+def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
     """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
     inverse_dt = 1.0 / dt
@@ -310,8 +303,9 @@ def _press(w, surface, count, sign, mu, stiffness, offset, damping, slow, dt):
         k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
         rate = sign * (nx * wx + ny * wy + nz * wz)
         depth = max(0.0, -w[GAP + t])
-        spring, stored = _spring(depth, offset)
-        spring, stored = k * spring, k * stored
+        excess = max(0.0, depth - hard)
+        spring = k * (depth + (HARDENING - 1.0) * excess)
+        stored = 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
         fn = max(0.0, spring - c * rate)
         # slip rate with lower, then upper components; the spring's slip if nothing gave way
         ru = wx * ux + wy * uy + wz * uz + d * w[BU + t]
@@ -344,8 +338,9 @@ def _press(w, surface, count, sign, mu, stiffness, offset, damping, slow, dt):
         rubbed += 0.5 * TANGENTIAL * opened * across
         # the spring's force is taken to act through all of the step in which contact begins or ends
         before = w[BEFORE + t]
-        held_before, left = _spring(before, offset)
-        held_before, left = opened * held_before, opened * left
+        more = max(0.0, before - hard)
+        held_before = opened * (before + (HARDENING - 1.0) * more)
+        left = 0.5 * opened * (before * before + (HARDENING - 1.0) * more * more)
         damped += left * inverse_dt - 0.5 * held_before * rate
         begun = 1.0 if before == 0.0 else 0.0
         damped -= begun * (0.5 * spring * rate + stored * inverse_dt)
@@ -410,9 +405,8 @@ def _chunk(
     if _settle(w, nodes, count, place, slip, rest, cell, deepest, 1.0 / reach) > 0:
         _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
-        sums = _press(
-            w, surface, count, pair.sign, pair.friction, pair.stiffness, pair.offset, pair.damping, slow, dt
-        )
+        hard = HARD * pair.offset
+        sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, hard, pair.damping, slow, dt)
         for k in range(4):
             out[k] += sums[k]
         _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)

@@ -6,8 +6,8 @@ gradient n is pushed by
 
     (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
 
-(v*: the velocity at the end of the step without the tool: by then it would still be pushed; beyond the depth HARD by
-e it is K A (HARDENING - 1) e more, and HARDENING K at the rate), and held by Coulomb friction on a spring to its anchor
+(v*: the velocity at the end of the step without the tool: by then it would still be pushed; beyond the depths HARD and
+HARDER it is 3 and 6 times as stiff, also against the rate), and held by Coulomb friction on a spring to its anchor
 of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v is the spring's force at the place that the point is
 moving to. The force goes to the node, or to the cell's four
 with the point's bilinear weights N_i, and with it the tensor
@@ -41,8 +41,8 @@ from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.jit import FAST, INLINE
 
 FREE = 1.0e30
-HARD, HARDENING = 0.1, 3.0
-"""Depth [mm] beyond which the penalty is stiffer, and how much: on apexes, where fibres press with some 10 MPa."""
+HARD, HARDER = 0.1, 0.15
+"""Depths [mm] beyond which the penalty is 3 and 6 times as stiff: on apexes, where fibres press with some 10 MPa."""
 WALL, POINTS = 5, 7
 """Of the contact points of a node: the first on a wall, and how many there are."""
 LONGEST_SLEEP = 16
@@ -55,9 +55,14 @@ PRESS = 12
 @njit(**INLINE)
 def _spring(k, depth):
     """Force of the penalty at a depth, and what it stores."""
-    excess = max(0.0, depth - HARD)
-    force = k * (depth + (HARDENING - 1.0) * excess)
-    return force, 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
+    hard, harder = max(0.0, depth - HARD), max(0.0, depth - HARDER)
+    return k * (depth + 2.0 * hard + 3.0 * harder), 0.5 * k * (depth**2 + 2.0 * hard**2 + 3.0 * harder**2)
+
+
+@njit(**INLINE)
+def _times(depth):
+    """How many times as stiff the penalty is at a depth."""
+    return 6.0 if depth > HARDER else 3.0 if depth > HARD else 1.0
 
 
 @njit(**INLINE)
@@ -90,14 +95,14 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
     px, py, pz = p
     spring, stored = _spring(k, -near)
     drag = TANGENTIAL * (c + dt * k)
-    c += dt * k * (HARDENING if near < -HARD else 1.0)
+    c += dt * k * _times(-near)
     inertia = dt * c
     pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
     normal = spring - c * rate if pushed else 0.0
     out[0] += stored
     new = anchor[0] >= FREE
     before = 0.0 if new else max(0.0, dt * rate - near)
-    if new or (before > HARD) != (near < -HARD):  # the mean force acts on the way, but stores less where it has a kink
+    if new or _times(before) != _times(-near):  # the mean force acts on the way, but stores less where it has a kink
         held, left = _spring(k, before)
         out[3] -= 0.5 * (spring + held) * dt * rate + stored - left
     if new:

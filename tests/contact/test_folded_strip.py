@@ -55,6 +55,8 @@ def test_a_stack_that_folds_keeps_its_order():
             points = [np.ascontiguousarray(bench.x(k).reshape(3, -1).T) for k in range(3)]
             found += sum(len(crossings(p, q)) for p in points)
             found += sum(len(crossings(points[k], q, points[k + 1], q)) for k in range(2))
+            if found:  # what sheets that went through themselves do to each other is of no use
+                break
         assert (found > 0) != touches
     touching = [int(t.sum()) for t in _touching(bench)]
     # the inner diaphragm on itself; between the other sheets' flanks lie two layers and more

@@ -9,7 +9,8 @@ from ddf.contact.friction import TANGENTIAL
 
 
 @pytest.mark.parametrize(
-    ("sign", "deeper", "edge"), [(1.0, 0.0, False), (-1.0, 0.0, False), (1.0, 0.3, False), (1.0, 0.6, False), (1.0, 0.1, True)]
+    ("sign", "deeper", "edge"),
+    [(1.0, 0.0, False), (-1.0, 0.0, False), (1.0, 0.3, False), (1.0, 0.6, False), (1.0, 0.1, True)],
 )
 def test_force_is_the_gradient_of_the_spring_energy(sign, deeper, edge):
     xs, xm = t.curved_scene(np.random.default_rng(0))

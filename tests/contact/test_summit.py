@@ -81,8 +81,8 @@ def test_what_elements_can_see_is_no_summit(shape):
 
 
 def _spring(depth):
-    """Force of the penalty over its stiffness; stiffer beyond 0.1 mm."""
-    return depth + 2.0 * max(0.0, depth - 0.1)
+    """Force of the penalty over its stiffness; stiffer beyond 0.1 and 0.15 mm."""
+    return depth + 2.0 * max(0.0, depth - 0.1) + 3.0 * max(0.0, depth - 0.15)
 
 
 def _waved(rng, height):

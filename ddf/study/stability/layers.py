@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddf.build import build_scene
-from ddf.contact.layers import HARD, HARDER
+from ddf.contact.layers import HARD, HARDENING
 from ddf.model import sheet_vectors
 from ddf.study.stability.map import FloatArray, Limit, Map, RuleLine, Spot, grid, judge
 from ddf.study.stability.scenes import FLAT, make_case, rough
@@ -25,10 +25,9 @@ RIGHT = 0.5
 
 def give(stiffness: float, offset: float) -> float:
     """Depth [mm] at which the penalty bears the atmosphere."""
-    hard, harder = HARD * offset, HARDER * offset
+    hard = HARD * offset
     plain = PRESSURE / stiffness
-    over = hard + (plain - hard) / 3.0
-    return plain if plain <= hard else over if over <= harder else harder + (over - harder) / 2.0
+    return plain if plain <= hard else hard + (plain - hard) / HARDENING
 
 
 def _spot(stiffness: float, damping: float) -> Spot:
