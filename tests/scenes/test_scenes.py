@@ -9,7 +9,7 @@ DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
 
 
 APEX = pytest.mark.xfail(
-    strict=False, reason="5 mm cells on an apex of 70 deg and 0.5 mm: 0.53 mm of a ply in the tool"
+    strict=False, reason="5 mm cells on an apex of 0.5 mm and 70 deg: 0.53 mm of a ply in it"
 )
 
 
