@@ -43,7 +43,7 @@ class Source:
     def fault(self, problem: Problem) -> Fault:
         """Give a problem its place: the line in the file, or the override that set the value."""
         key = ".".join(str(part) for part in problem.path)
-        change = override_of(problem.path, self.changes)
+        change = override_of(problem.path, self.changes, made=problem.path not in self.lines.lines)
         place = ("--set", change.number) if change else (self.file, self.lines.at(problem.path))
         return Fault(*place, key, problem.problem, problem.allowed, problem.suggestion)
 

@@ -53,10 +53,13 @@ def put(raw: dict[str, Any], key: str, value: Any) -> None:
         raise KeyError(f"{key}: {problem}")
 
 
-def override_of(path: KeyPath, changes: Sequence[Override]) -> Override | None:
-    """Return the last change that set the value at a key path, or a table around it."""
+def override_of(path: KeyPath, changes: Sequence[Override], *, made: bool = False) -> Override | None:
+    """Return the last change that set the value at a key path, or a table around it.
+
+    made: or one in the table at that path, which the file does not have: the change has made it.
+    """
     for change in reversed(changes):
-        if path[: len(change.path)] == change.path:
+        if path[: len(change.path)] == change.path or (made and path and change.path[: len(path)] == path):
             return change
     return None
 

@@ -190,6 +190,7 @@ def test_overrides():
         ("solver.threads=", "not valid TOML|is not"),
         ("solver.thread=2", "did you mean 'threads'"),
         ("solver.threads=0", "out of range"),
+        ("target.seconds=60", "means nothing without"),
     ],
 )
 def test_faulty_overrides(text, words):
