@@ -21,7 +21,7 @@ import stat
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -106,11 +106,11 @@ def cache_note() -> str:
     return f"the cache folder cannot be written to: kernels are kept in {folder} (DDF_CACHE_DIR chooses another)"
 
 
-def warm_kernels() -> None:
+def warm_kernels(say: Callable[[str], None] | None = None) -> None:
     """Compile all kernels in a process of their own, unless that was done; others that need them wait.
 
-    Where that process fails, a warning says so, and kernels are compiled where they are used. Raises DdfError where
-    there is no place for them.
+    `say` is told before it begins. Where that process fails, a warning says so, and kernels are compiled where they are
+    used. Raises DdfError where there is no place for them.
     """
     import subprocess
     from importlib.metadata import version
@@ -128,6 +128,8 @@ def warm_kernels() -> None:
     with _one_at_a_time(folder):
         if marker.exists():
             return
+        if say is not None:
+            say("compiling the solver for this machine: a minute or two, once")
         command = [sys.executable, "-m", "ddf.compile_kernels"]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         if done.returncode == 0:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ddf.commands.common import CASE, INTERRUPTED, MISSED, SET, SOME_FAILED, end_progress, fail, say_over
+from ddf.commands.common import CASE, INTERRUPTED, MISSED, SET, SOME_FAILED, end_progress, fail, say, say_over
 
 
 @click.group()
@@ -141,7 +141,7 @@ def stability(limits: tuple[str, ...], show: bool, quick: bool, output: Path) ->
         for limit in chosen:
             click.echo(f"{limit.name.ljust(width)}  {limit.title}: {limit.rule}")
         return
-    warm_kernels()
+    warm_kernels(say)
     failed = []
     for done in chart_all(chosen, quick, output, lambda limit: click.echo(f"{limit.name} ...", err=True)):
         counts = ", ".join(f"{count} {verdict}" for verdict, count in done.counts.items())

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ddf.commands.common import INTERRUPTED, MISSED, SET, end_progress, fail, say_over
+from ddf.commands.common import INTERRUPTED, MISSED, SET, end_progress, fail, say, say_over
 
 PAPER = "paper"
 PAPER_LINE = (
@@ -97,8 +97,8 @@ def _solve(
     options = Options(quick=quick, element_mm=element_mm, formulation=formulation, threads=threads)
     if case is not None:
         options = with_case_materials(options, case)
-    click.echo(f"{len(chosen)} problems; the kernels are compiled first where they are new ...", err=True)
-    warm_kernels()
+    say(f"{len(chosen)} problems ...")
+    warm_kernels(say)
     missed = []
     for outcome in solve_all(chosen, options, output, lambda problem: click.echo(f"{problem.name} ...", err=True)):
         click.echo(f"{outcome.problem.name}: {outcome.problem.title} ({outcome.wall_s:.1f} s)")

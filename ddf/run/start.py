@@ -69,7 +69,7 @@ def run_case(
         RunFolder(folder).refuse(force=force, resume=resume)
         if not compiled:
             with watch("compile"):
-                warm_kernels()
+                warm_kernels(warn)
         interrupt.noting = True
         with watch("mesh"):
             scene = prepare(case, source, warnings.append, None if resume else _existing(Path(folder)))
