@@ -46,7 +46,7 @@ def run(
     settings = [part for item in overrides for part in ("--set", item)]
     again = shlex.join(["ddf", "run", str(case), "-o", str(folder), "--resume", *settings])
     if not quiet and loaded.model == "forming":
-        click.echo("meshing, then compiling the kernels (about a minute the first time) ...", err=True)
+        click.echo("meshing ...", err=True)
     try:
         result = run_case(
             loaded, folder, case_text=None if overrides else source.text, threads=threads, resume=resume, force=force,
