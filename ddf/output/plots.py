@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -123,6 +124,8 @@ def base_segments(tool: TriangleMesh, level_mm: float = 0.05) -> Array:
 
 def _draw_wrinkles(axes: Any, result: WrinkleResult) -> None:
     """Crests with their numbers; 1.2 points of width per mm of amplitude."""
+    scale = 1.15 * float(np.ptp(axes.get_xlim())) / (72.0 * axes.figure.get_figwidth())  # about, layout is to come
+    numbers: list[Array] = []
     for number, wrinkle in enumerate(result.wrinkles, start=1):
         crest = wrinkle.crest
         width = float(np.clip(1.2 * wrinkle.amplitude_mm, 0.8, 9.0))
@@ -136,8 +139,10 @@ def _draw_wrinkles(axes: Any, result: WrinkleResult) -> None:
             solid_capstyle="round",
             label=label,
         )
+        where, beside = _free_place(crest, 9.0 + 0.5 * width, scale, numbers)
+        numbers.append(where + scale * beside)
         axes.annotate(
-            str(number), crest[len(crest) // 2, :2], _beside(crest, 9.0 + 0.5 * width), textcoords="offset points",
+            str(number), where, beside, textcoords="offset points",
             ha="center", va="center", fontsize=8.5, color=figures.INK,
             bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": figures.MUTED, "linewidth": 0.5},
         )  # fmt: skip
@@ -148,12 +153,22 @@ def _draw_wrinkles(axes: Any, result: WrinkleResult) -> None:
         axes.text(0.012, 0.988, text, transform=axes.transAxes, va="top", fontsize=figures.NOTE_PT, color=figures.MUTED)
 
 
-def _beside(crest: Array, points: float) -> tuple[float, float]:
-    """So many points square to a crest's chord, to the side away from the frame's centre."""
+def _free_place(crest: Array, points: float, scale: float, taken: list[Array]) -> tuple[Array, Array]:
+    """Place on a crest, and way from it in points, square to the chord, of a number off those that are there.
+
+    The middle, on the side away from the frame's centre, if that is free; scale: mm of a point of the drawing.
+    """
     along = crest[-1, :2] - crest[0, :2]
-    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-300)
-    side = -1.0 if across @ crest[len(crest) // 2, :2] < 0 else 1.0
-    return float(side * points * across[0]), float(side * points * across[1])
+    across = np.array([-along[1], along[0]]) * points / max(float(np.linalg.norm(along)), 1e-300)
+    if across @ crest[len(crest) // 2, :2] < 0:
+        across = -across
+    places = [(crest[int(share * (len(crest) - 1)), :2], side * across)
+              for share in (0.5, 0.3, 0.7, 0.1, 0.9) for side in (1.0, -1.0)]  # fmt: skip
+    room = [min((math.dist(p + scale * way, q) for q in taken), default=math.inf) for p, way in places]
+    enough = 15.0 * scale
+    return next(
+        (place for place, free in zip(places, room, strict=True) if free > enough), places[int(np.argmax(room))]
+    )
 
 
 def _ply_map(surface: PlySurface, title: str, box: Box | None) -> tuple[Any, Any, TopView, Box]:
