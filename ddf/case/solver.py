@@ -47,7 +47,7 @@ class Solver(Section):
     )
     tool_contact_stiffness_N_mm3: float = Field(
         default=100.0, gt=0, le=1e4,
-        description="Penalty on the tool [N/mm3]: pressure per penetration; three times beyond 0.1, six beyond 0.15 mm.",
+        description="Penalty on the tool [N/mm3]: pressure per penetration; 3 times beyond 0.1, 6 beyond 0.15 mm.",
     )  # fmt: skip
     in_plane_pressure: bool = Field(
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."
