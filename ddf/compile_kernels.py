@@ -53,7 +53,7 @@ def _compile_phases(contact: bool) -> None:
 
     from ddf.build import build_scene
     from ddf.case import case_from_dict
-    from ddf.dynamics import step
+    from ddf.dynamics import mirror, phases
     from ddf.output.raster import view_from_above
     from ddf.simulate import Simulation
 
@@ -61,15 +61,19 @@ def _compile_phases(contact: bool) -> None:
     model, state, work = (typeof(handle) for handle in sim.handles)  # type: ignore[no-untyped-call]
     vector = float64[::1]
     if contact:
-        step._tool.compile((model, state, work, int64, vector, int64, float64, float64))
-        step._pull_family.compile((model, state, work, int64, int64, int64, int64))
-        step._layers.compile((model, state, work, int64, int64, float64, float64))
-        step._move.compile((model, state, work, vector, int64, int64))
-        step._collect.compile((model, state, work, int64))
-        step._drift.compile((model, state, int64))
+        phases.pull_family.compile((model, state, work, int64, int64, int64, int64))
+        phases.layers.compile((model, state, work, int64, int64, float64, float64))
+        phases.leave.compile((model, state, work, vector, int64, float64, int64, int64))
+        phases.tool.compile((model, state, work, int64, vector, int64, float64, float64))
+        phases.drift.compile((model, state, work, vector, int64))
         view_from_above(sim.scene.state.x[:12].reshape(3, 2, 2), np.ones((1, 1), bool), (0.0, 1.0, 0.0, 1.0), pixels=2)
     else:
-        step._internal.compile((model, state, work, vector, int64, vector))
+        phases.internal.compile((model, state, work, vector, int64, vector))
+        phases.collect.compile((model, state, work, int64))
+        mirror.fold_back.compile((model, state, work, float64, int64))
+        mirror.follow.compile((model, state, work, int64))
+        mirror.follow_tension.compile((model, state, int64))
+        mirror.follow_speed.compile((model, state, int64))
         sim.seek(0.0)
     sim.close()
 

@@ -32,7 +32,7 @@ step           dt                    one evaluation of all forces [s]
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -80,6 +80,7 @@ SHEET = np.dtype(
         ("bend2", np.float64),
         ("bend_in_plane", np.float64),
         ("thickness", np.float64),
+        ("bed", np.float64),  # ply: distance from the tool at which it bears the ply itself, see `contact.bed` [mm]
         ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
         ("hourglass", np.float64),  # modulus 4 mu t of the diaphragms: hourglass strains, fold struts [N/mm]
         ("squeeze", np.float64),  # thickness on which contact pressure acts in the plane, 0: on none [mm]
@@ -129,9 +130,8 @@ class Model(NamedTuple):
     pairs: np.ndarray  # PAIR
     mass: np.ndarray  # (N,) [tonne], scaled
     inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node at its given velocity
+    line_mass: np.ndarray  # (N,) the same; below 0 for nodes that do not leave the mirror plane, see `elements.tension`
     area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
-    row_span: np.ndarray  # (rows of all sheets, 2) first and last+1 node that exists
-    row_first: np.ndarray  # (sheets,) first row of a sheet in row_span
     bar1: np.ndarray
     bar2: np.ndarray
     cell: np.ndarray  # (N,) reference area of a cell [mm2]
@@ -139,6 +139,7 @@ class Model(NamedTuple):
     triple2: np.ndarray
     weight: np.ndarray  # (4 N,) weights of the bars around a node in its tangents, see `bending.tangent_weights`
     lines: np.ndarray  # reference sizes of diaphragm cells: rows then cols [mm]
+    tool_lines: np.ndarray  # the same as the tool's contact takes them: 0 for cells beyond the mirror plane
     shear_tables: np.ndarray  # (laws, intervals, 5)
     tangents: np.ndarray  # (laws, intervals): h G [N/mm] over the shear angle, 0 .. `shear_law.TANGENT_SPAN`
     ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
@@ -155,8 +156,19 @@ class Model(NamedTuple):
     tool_mass: float  # areal mass of that sheet [tonne/mm2]
     tool_friction: float
     tool_boxed: bool  # whether the box's walls stand under that sheet's edges, which run along x and y
+    tool_walls: np.ndarray  # (4,) where they stand: least and largest x, then y [mm]
     summits: np.ndarray  # (k, SUMMIT) sharp vertices of the tool, see `contact.summit`
     gravity: np.ndarray  # (3,) acceleration that all (scaled) masses feel [mm/s2]
+    mirror: int  # component normal to the mirror plane of a half model (`dynamics.mirror`), -1 in a whole one
+    ghosts: np.ndarray  # (G, 2) nodes of the pools: beyond the plane, and its image; by blocks of the first
+    ghost_first: np.ndarray  # (blocks + 1,) first ghost of each block
+    images: np.ndarray  # (G,) numbers of ghosts, by blocks of their images
+    image_first: np.ndarray  # (blocks + 1,)
+    plane: np.ndarray  # (P,) nodes on the plane, by blocks
+    plane_first: np.ndarray  # (blocks + 1,)
+    twins: np.ndarray  # (T, 2) 2 k + family - 1 of bar k beyond the plane, and of its image; by blocks of the first
+    twin_first: np.ndarray  # (blocks + 1,)
+    away: np.ndarray  # (N,) bool: nodes so far from the plane that they may meet their sheet's image
     dt: float
 
 
@@ -180,6 +192,16 @@ class State(NamedTuple):
     ledger: np.ndarray
     springs: np.ndarray  # (blocks, SPRINGS)
     clock: np.ndarray  # (4,): step number, time [s]; the same where the step last changed
+
+
+def without_mirror(inverse_mass: np.ndarray, blocks: int) -> dict[str, Any]:
+    """Fields of a whole model that a half one has otherwise."""
+    none, firsts = np.zeros(0, np.int64), np.zeros(blocks + 1, np.int64)
+    return {
+        "line_mass": inverse_mass, "mirror": -1, "ghosts": np.zeros((0, 2), np.int64), "ghost_first": firsts,
+        "images": none, "image_first": firsts, "plane": none, "plane_first": firsts,
+        "twins": np.zeros((0, 2), np.int64), "twin_first": firsts, "away": np.zeros(inverse_mass.size, bool),
+    }  # fmt: skip
 
 
 @njit(**INLINE)

@@ -42,6 +42,7 @@ def finish_folder(
 
     Pictures that cannot be drawn (no fonts, no backend) are named in `notes`; the run does not fail for them.
     """
+    scene = scene.whole()
     surfaces, wrinkles, tables = measure(scene)
     across = [found.smallest_elements_across for found in wrinkles if found.count]
     kinetic = open_run(out.path).history()["kinetic_mJ"]
@@ -136,5 +137,6 @@ def rebuild_report(path: Path) -> Path:
     if run.info["stop_reason"] != "finished":
         raise DdfError(f"{path} holds an unfinished run, at {time:.5f} s", "finish it with ddf run --resume")
     notes: list[str] = []
-    finish_folder(scene, out, energies(scene.model, scene.state), time, notes)
+    whole = scene.whole()
+    finish_folder(whole, out, energies(whole.model, whole.state), time, notes)
     return report_of(scene, out, notes)

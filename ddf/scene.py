@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ddf.case import Case
+from ddf.half import Half
 from ddf.loads.path import LoadPath
 from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.distance import DistanceField
@@ -45,6 +46,15 @@ class Scene:
     tool_field: DistanceField | None
     step_limit: float  # stable step [s], safety included
     first_step_s: float  # step [s] of the model as it was built; a run may cut it
+    half: Half | None = None  # of a half model: the whole that it stands for
+    symmetry: str = ""  # why a scene that might be computed by half is not
+
+    def whole(self) -> Scene:
+        """The whole scene as it is now, for all that observes it; of a half model in arrays of its own."""
+        if self.half is None:
+            return self
+        model = self.half.whole._replace(dt=self.model.dt)
+        return replace(self, model=model, state=self.half.unfold(self.model, self.state), half=None)
 
     @property
     def steps(self) -> int:

@@ -6,56 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.self_search import SelfContact
-from ddf.contact.summit import PUSH
-from ddf.contact.tool import PRESS
 from ddf.dynamics.handle import held
-from ddf.dynamics.step import SCRATCH_ROWS, Work, advance, largest_square
+from ddf.dynamics.phases import largest_square
+from ddf.dynamics.step import advance
 from ddf.dynamics.team import Team
-from ddf.elements import bending, shear, squeeze
+from ddf.dynamics.work import make_work
 from ddf.elements.rubber import cone_volume
-from ddf.elements.shell_membrane import membrane, shell
-from ddf.elements.tension import LINES
-from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, Model, sheet_vectors
+from ddf.model import DIAPHRAGM, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, TOOL_SPEED, sheet_vectors
 from ddf.scene import Scene
 
 BATCH = 10  # steps between two looks at how fast the sheets are
 REACH_SPEED = 500.0  # mm/s: least relative speed that sleeping cells and resting nodes allow for
-
-
-def make_work(model: Model, members: int) -> Work:
-    """Scratch memory for a team of `members` threads."""
-    widest = int(model.sheets["cols"].max()) + 2
-    buffers = spans = 0
-    for pair in model.pairs:
-        n, m = (int(model.sheets[pair["master"]][key]) for key in ("rows", "cols"))
-        blocks = int(np.sum(model.blocks["sheet"] == pair["slave"]))
-        buffers = max(buffers, int(pair["buffer"]) + 4 * n * m * blocks)
-        spans = max(spans, int(pair["span"]) + n * blocks)
-    bundles: tuple[list[tuple[int, int, int]], ...] = ([], [])
-    for k in np.flatnonzero(model.sheets["kind"] == PLY):
-        for family, key in enumerate(("cols", "rows")):
-            count = int(model.sheets[k][key])
-            bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
-    tiled = (bending, shear, squeeze, membrane, shell)
-    longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
-    bottom = model.sheets[0]
-    return Work(
-        scratch=np.zeros((members, max(SCRATCH_ROWS * widest, *(part.SCRATCH for part in tiled)))),
-        packed=np.zeros(4 * model.mass.size), rates=np.zeros(4 * model.mass.size),
-        nothing=np.zeros(model.mass.size), normal=np.zeros(model.mass.size),
-        buffers=np.zeros(buffers), spans=np.tile(np.array([NOWHERE, 0]), (spans, 1)),
-        chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, PRESS)),
-        shell_carry=np.zeros((6, model.blocks.size, widest)),
-        carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
-        pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, PRESS)),
-        pushes=np.full((model.summits.shape[0], PUSH), -1.0),
-        sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
-        rest=np.zeros(model.exposed.size, np.int8), idle=np.zeros(model.pairs.size, bool),
-        bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
-        lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 9 * longest * LINES)),
-    )  # fmt: skip
 
 
 class Simulation:
@@ -83,10 +45,15 @@ class Simulation:
 
     def _swept(self) -> dict[int, float]:
         diaphragms = np.flatnonzero(self.model.sheets["kind"] == DIAPHRAGM)
-        return {
-            int(k): cone_volume(sheet_vectors(self.model, self.state.x, int(k)), 0, int(self.model.sheets[k]["rows"]))
-            for k in diaphragms
-        }
+        swept = {}
+        for k in diaphragms:
+            x = sheet_vectors(self.model, self.state.x, int(k))
+            if self.model.mirror >= 0:  # what the cones from the origin hold lies on one side of the plane too
+                node = self.model.plane - int(self.model.sheets[k]["node"])
+                row, col = np.divmod(node[(node >= 0) & (node < x[0].size)], x.shape[2])
+                x = np.ascontiguousarray(x[:, row.min() :, col.min() :])
+            swept[int(k)] = cone_volume(x, 0, x.shape[1])
+        return swept
 
     def time_of(self, step: Any) -> Any:
         """Process time [s] at step numbers from now on, with the step as it is."""
@@ -117,7 +84,7 @@ class Simulation:
         model, state = self.model, self.state
         times = self.time_of(np.arange(self.step, self.step + steps, dtype=np.float64))
         schedule = self.scene.path.schedule(times, self.scene.base_z, model.dt)
-        self.work.sleep[:] = 0
+        self.work.sleep[:] = self.work.bed_sleep[:] = 0
         self.work.rest[:] = self._followed
         reach = self._reach_speed(schedule) * model.dt
         self.seek(reach * steps)

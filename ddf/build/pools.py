@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +23,11 @@ LEAST_NODE = 0.25
 pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
 
 
-def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[str, np.ndarray]:
-    """Node pools of the model: masses, areas, bars, cells, triples, spans."""
+def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[str, Any]:
+    """Node pools of the model: masses, areas, bars, cells, triples."""
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
-    spans, firsts, centres, weights, first = [], [], [], [], 0
+    centres, weights = [], []
     for k, s in enumerate(sheets):
         n, m = int(s["rows"]), int(s["cols"])
         zero = np.zeros((n, m))
@@ -35,14 +36,12 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
             values["cover"] = ply_cover(values["cell"])
-            span = np.asarray(ply.row_span)
             held, exists = np.zeros((n, m), bool), ply.active
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
             values["area"], values["cell"] = corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
             values["cover"] = np.ones((n, m))
-            span = np.tile([0, m], (n, 1))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
         area = values["area"]
@@ -53,16 +52,11 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
         values["inverse_mass"] = np.where(held | (mass <= 0), 0.0, 1.0 / np.where(mass > 0, mass, 1.0))
         for name in names:
             parts[name].append(values[name].ravel())
-        spans.append(span)
         centres.append(patch_centres(exists).ravel())
         weights.append(tangent_weights(values["bar1"], values["bar2"]).ravel())
-        firsts.append(first)
-        first += n
-    pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
-    pools["row_span"] = np.ascontiguousarray(np.concatenate(spans).astype(np.int64))
+    pools: dict[str, Any] = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
     pools["centre"] = np.concatenate(centres)
     pools["weight"] = np.concatenate(weights)
-    pools["row_first"] = np.array(firsts, dtype=np.int64)
     return pools
 
 

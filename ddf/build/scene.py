@@ -3,33 +3,45 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ddf.build.half import halve
 from ddf.build.loads import load_path
 from ddf.build.pairs import contact_pairs
 from ddf.build.pools import node_pools, row_blocks
+from ddf.build.rest import state_at_rest
 from ddf.build.sheets import sheet_records
 from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nominal_height
 from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
-from ddf.build.summits import NO_SPOTS, first_spots, summit_records
+from ddf.build.summits import first_spots, summit_records
 from ddf.case import Case, hyperelastic_material
-from ddf.contact.tool import FREE, POINTS
 from ddf.dynamics import timestep
-from ddf.elements.shell_membrane.history import HISTORY, M_C11, M_C22, S_C11, S_C22
-from ddf.elements.shell_membrane.rotations import normals
 from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.ply import PlyMesh
-from ddf.model import DIAPHRAGM, LEDGER, SHELL_PLY, SPRINGS, Model, State, sheet_shells, sheet_vectors
+from ddf.model import DIAPHRAGM, Model, without_mirror
 from ddf.scene import Scene, SheetInfo
 
 FloatArray = NDArray[np.float64]
 
 
 def build_scene(case: Case) -> Scene:
-    """Mesh a case and assemble its model and initial state. Raises MeshError or CaseError."""
-    stack = mesh_stack(case)
+    """Mesh a case and assemble its model and initial state. Raises MeshError or CaseError.
+
+    With `solver.symmetry` "auto" a scene that is its own mirror image becomes a half model, on grids with a line in the
+    middle.
+    """
+    if case.solver.symmetry == "off":
+        return _whole_scene(case, even=False)
+    half = halve(_whole_scene(case, even=True))
+    return half if half.half is not None else replace(_whole_scene(case, even=False), symmetry=half.symmetry)
+
+
+def _whole_scene(case: Case, even: bool) -> Scene:
+    """The whole scene of a case; even: whether all grids get an even number of cells along both directions."""
+    stack = mesh_stack(case, even)
     tool_mesh, tool_field = (None, None) if case.tool is None else mesh_tool(case.tool)
     rubber = hyperelastic_material(case, case.diaphragms.material)
     terms = rubber.abaqus_terms
@@ -44,10 +56,12 @@ def build_scene(case: Case) -> Scene:
     peaks = summit_records(tool_mesh, case.diaphragms.element_mm, 0.5 * stack.thickness[0])
     friction, solver = case.friction, case.solver
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
+    lines = np.concatenate([np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)])
+    lines /= case.diaphragms.pre_stretch
+    walls = [line[end] for line in (stack.diaphragm.x_lines, stack.diaphragm.y_lines) for end in (0, -1)]
     model = Model(
         sheets=sheets, blocks=blocks, pairs=pairs, **pools,
-        lines=np.concatenate([np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)])
-        / case.diaphragms.pre_stretch,
+        **without_mirror(pools["inverse_mass"], len(blocks)), lines=lines, tool_lines=lines,
         shear_tables=laws, tangents=tables, ogden=np.array(terms, dtype=float), exposed=exposed, tool=values,
         tool_origin=np.zeros(3) if tool_field is None else np.asarray(tool_field.origin, dtype=float),
         tool_spacing=1.0 if tool_field is None else float(tool_field.spacing),
@@ -56,7 +70,7 @@ def build_scene(case: Case) -> Scene:
         tool_damping=timestep.contact_damping(
             solver.contact_damping, solver.tool_contact_stiffness_N_mm3, masses[0], math.inf
         ),
-        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, tool_boxed=True,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, tool_boxed=True, tool_walls=np.array(walls),
         summits=peaks, gravity=np.zeros(3), dt=dt,
     )  # fmt: skip
     height = 0.0 if tool_mesh is None or case.tool is None else nominal_height(case.tool, tool_mesh)
@@ -86,28 +100,3 @@ def sheet_infos(case: Case, stack: Stack, model: Model, scales: list[float]) -> 
             true = stack.materials[k - 1].areal_density_gsm * TONNE_PER_GSM_MM2 * float(model.area[a : a + n].sum())
         infos.append(SheetInfo(name, kind, stack.thickness[k], scale, true, mass - true, mesh))
     return tuple(infos)
-
-
-def state_at_rest(model: Model, x: FloatArray, places: FloatArray, spots: FloatArray = NO_SPOTS) -> State:
-    """A fresh state: positions x (3 N,), first places of all pairs, nothing in motion, no tension, no anchor.
-
-    spots: of the tool's summits, from `first_spots`.
-    """
-    sheet = model.sheets[model.tool_sheet]
-    nodes = (int(sheet["rows"]), int(sheet["cols"])) if model.tool_sheet >= 0 else (1, 1)
-    anchors = np.zeros((*nodes, POINTS, 3))
-    anchors[..., 0] = FREE
-    shells = model.sheets["kind"] == SHELL_PLY
-    size = int((model.sheets["rows"] * model.sheets["cols"])[shells].sum())
-    state = State(
-        x=x, v=np.zeros_like(x), f=np.zeros_like(x),
-        place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors, spots=spots,
-        press=np.zeros(model.mass.size), tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
-        director=np.zeros(3 * size), spin=np.zeros(3 * size), pull=np.zeros(3 * size), history=np.zeros(HISTORY * size),
-        ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
-        clock=np.zeros(4),
-    )  # fmt: skip
-    for k in np.flatnonzero(shells):
-        sheet_shells(model, state.history, int(k), HISTORY)[[M_C11, M_C22, S_C11, S_C22]] = 1.0
-        sheet_shells(model, state.director, int(k), 3)[:] = normals(sheet_vectors(model, x, int(k)))
-    return state

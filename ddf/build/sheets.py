@@ -11,6 +11,15 @@ from ddf.dynamics import timestep
 from ddf.materials import ogden, shear_law
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, SHEET, SHELL_PLY
 
+LOWEST = 0.75
+"""A ply that lies on the diaphragm itself is borne when the two are pressed to this share of their distance."""
+
+
+def _bed(thickness: list[float]) -> float:
+    """Distance [mm] from the tool at which it bears the last of some sheets, diaphragm first (`contact.bed`)."""
+    layers = sum(0.5 * (a + b) for a, b in zip(thickness[:-1], thickness[1:], strict=True))
+    return 0.5 * thickness[0] + min(0.5 * layers, LOWEST * 0.5 * (thickness[0] + thickness[-1]))
+
 
 def sheet_records(case: Case, stack: Stack, terms):
     """SHEET records, the stacked shear and tangent tables and the largest shear tangent of each ply [N/mm]."""
@@ -33,6 +42,7 @@ def sheet_records(case: Case, stack: Stack, terms):
             s["bend1"], s["bend2"] = material.bending_rigidity_Nmm
             s["bend_in_plane"] = material.in_plane_bending_Nmm
             s["fold_radius"] = 0.5 * (d.thickness_mm + material.thickness_mm)
+            s["bed"] = 0.0 if case.tool is None else _bed(stack.thickness[: k + 1])
             table = material.shear_table
             angle, force = shear_law.shear_samples(
                 material.shear_law, material.thickness_mm, material.shear_modulus_floor_MPa,
@@ -43,7 +53,7 @@ def sheet_records(case: Case, stack: Stack, terms):
             slopes.append(shear_law.tangent_table(angle, force))
             tangents.append(shear_law.largest_tangent(angle, force))
             if case.plies[k - 1].formulation == "shell-membrane":
-                s["kind"], s["shell"] = SHELL_PLY, shell
+                s["kind"], s["shell"], s["bed"] = SHELL_PLY, shell, 0.0
                 s["transverse"], s["glass"] = material.transverse_shear_N_mm, case.solver.hourglass
                 s["gyration"] = timestep.shell_gyration(
                     stiffest(material), max(material.bending_rigidity_Nmm), material.transverse_shear_N_mm,

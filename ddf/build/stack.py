@@ -30,24 +30,23 @@ class Stack(NamedTuple):
     thickness: list[float]  # as clamped [mm]
 
 
-def mesh_stack(case: Case) -> Stack:
-    """Mesh all sheets of a case. Raises MeshError."""
+def mesh_stack(case: Case, even: bool = False) -> Stack:
+    """Mesh all sheets of a case, with even numbers of cells where wanted. Raises MeshError."""
     plies = []
     for ply in case.plies:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm
         shape = np.asarray(outline) - np.asarray(ply.offset_mm)
-        plies.append(
-            mesh_ply(
-                shape, holes, slits, ply.orientation_deg, ply.element_mm, (ply.offset_mm[0], ply.offset_mm[1]), ply.name
-            )
-        )
+        offset = (ply.offset_mm[0], ply.offset_mm[1])
+        plies.append(mesh_ply(shape, holes, slits, ply.orientation_deg, ply.element_mm, offset, ply.name, even))
     d = case.diaphragms
     corners = np.concatenate([np.asarray(ply.outline_mm(), dtype=float) for ply in case.plies])
     low, high = corners.min(axis=0) - d.margin_mm, corners.max(axis=0) + d.margin_mm
     half = np.array([case.frame.length_mm, case.frame.width_mm]) / 2
     low, high = np.maximum(low, -half), np.minimum(high, half)
     box = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-    mesh = mesh_diaphragm(case.frame.length_mm, case.frame.width_mm, box, d.element_mm, d.element_max_mm, d.growth)
+    mesh = mesh_diaphragm(
+        case.frame.length_mm, case.frame.width_mm, box, d.element_mm, d.element_max_mm, d.growth, even
+    )
     materials = [woven_material(case, ply.material) for ply in case.plies]
     thick = [m.thickness_mm for m in materials]
     skin = d.thickness_mm / d.pre_stretch**2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -54,6 +54,11 @@ class Solver(Section):
     )
     self_contact: bool = Field(default=True, description="Sheets that fold touch themselves, with friction.")
     contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
+    symmetry: Literal["off", "auto"] = Field(
+        default="off",
+        description="'auto': a scene that is its own mirror image in x = 0 or y = 0 is computed by half, and stays "
+        "symmetric (`ddf check` says so, or why not); 'off': all of it, free to buckle to one side.",
+    )
     hourglass: float = Field(
         default=0.05,
         ge=0,

@@ -53,14 +53,14 @@ PRESS = 12
 
 
 @njit(**INLINE)
-def _spring(k, depth):
+def penalty(k, depth):
     """Force of the penalty at a depth, and what it stores."""
     hard, harder = max(0.0, depth - HARD), max(0.0, depth - HARDER)
     return k * (depth + 2.0 * hard + 3.0 * harder), 0.5 * k * (depth**2 + 2.0 * hard**2 + 3.0 * harder**2)
 
 
 @njit(**INLINE)
-def _times(depth):
+def stiffer(depth):
     """How many times as stiff the penalty is at a depth."""
     return 6.0 if depth > HARDER else 3.0 if depth > HARD else 1.0
 
@@ -88,22 +88,22 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
             out[3] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
-            spring, stored = _spring(k, before)
+            spring, stored = penalty(k, before)
             out[3] += stored - 0.5 * spring * dt * rate
         anchor[0] = FREE
         return False
     px, py, pz = p
-    spring, stored = _spring(k, -near)
+    spring, stored = penalty(k, -near)
     drag = TANGENTIAL * (c + dt * k)
-    c += dt * k * _times(-near)
+    c += dt * k * stiffer(-near)
     inertia = dt * c
     pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
     normal = spring - c * rate if pushed else 0.0
     out[0] += stored
     new = anchor[0] >= FREE
     before = 0.0 if new else max(0.0, dt * rate - near)
-    if new or _times(before) != _times(-near):  # the mean force acts on the way, but stores less where it has a kink
-        held, left = _spring(k, before)
+    if new or stiffer(before) != stiffer(-near):  # the mean force acts on the way, but stores less where it has a kink
+        held, left = penalty(k, before)
         out[3] -= 0.5 * (spring + held) * dt * rate + stored - left
     if new:
         anchor[0], anchor[1], anchor[2] = px, py, pz
@@ -173,19 +173,17 @@ def _dual(d, j):
 
 
 @njit(**INLINE)
-def _from_wall(x, i, j):
+def _from_wall(x, walls, i, j):
     """Distance of node (i, j) from the nearest wall [mm]."""
-    n, m = x.shape[1] - 1, x.shape[2] - 1
-    across = min(x[0, i, j] - x[0, 0, 0], x[0, n, m] - x[0, i, j])
-    return min(across, x[1, i, j] - x[1, 0, 0], x[1, n, m] - x[1, i, j])
+    across = min(x[0, i, j] - walls[0], walls[1] - x[0, i, j])
+    return min(across, x[1, i, j] - walls[2], walls[3] - x[1, i, j])
 
 
 @njit(**FAST)
-def _walls(x, v, f, inverse, area, k, c, dt, i, j, anchors, out, give, press, pressed):
+def _walls(x, v, f, inverse, area, walls, k, c, dt, i, j, anchors, out, give, press, pressed):
     """Let the box's walls keep node (i, j) inside; k, c per area; other arguments as in `tool_forces`."""
-    n, m = x.shape[1] - 1, x.shape[2] - 1
     for axis in range(2):
-        low, high = x[axis, 0, 0], x[axis, n, m]
+        low, high = walls[2 * axis], walls[2 * axis + 1]
         inward = 1.0 if x[axis, i, j] < 0.5 * (low + high) else -1.0
         d = x[axis, i, j] - low if inward > 0.0 else high - x[axis, i, j]
         anchor = anchors[i, j, WALL + axis]
@@ -203,20 +201,21 @@ def _walls(x, v, f, inverse, area, k, c, dt, i, j, anchors, out, give, press, pr
 
 @njit(**FAST)
 def tool_forces(
-    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, boxed, motion, reach, dt,
+    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, box, motion, reach, dt,
     anchors, sleep, low, high, out, give,
 ):  # fmt: skip
     """Gather what the tool does to nodes and cells of rows low..high-1; returns its work [N mm], and if carry is used.
 
     x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
     pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
-    law = (offset, stiffness, damping, friction); boxed: whether walls stand under the sheet's edges; motion = (z,
-    speed) of the tool's base; reach: way that a point can go in a step [mm]; anchors (n, m, POINTS, 3): of the node
-    on the platform, then of the node, the middles of the edges along columns and rows, and the centre on the tool, of
-    the node on the walls across x and y;
+    law = (offset, stiffness, damping, friction); box: whether walls stand under the sheet's edges, and where (4,):
+    least and largest x, then y; motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
+    anchors (n, m, POINTS, 3): of the node on the platform, then of the node, the middles of the edges along columns and
+    rows, and the centre on the tool, of the node on the walls across x and y;
     sleep (n, m) int16; out (4,) as in `_point`; give (PRESS,) scratch.
     """
     offset, stiffness, damping, mu = law
+    boxed, walls = box
     z, speed = motion
     n, m = x.shape[1], x.shape[2]
     work = 0.0
@@ -224,8 +223,8 @@ def tool_forces(
     depth = x[2, 0, 0] - offset - z if boxed else 0.0
     for i in range(low, high):
         for j in range(m):
-            if boxed and _from_wall(x, i, j) < reach:  # one that touched a step ago is no farther
-                _walls(x, v, f, inverse, area, stiffness, damping, dt, i, j, anchors, out, give, press, pressed)
+            if boxed and _from_wall(x, walls, i, j) < reach:  # one that touched a step ago is no farther
+                _walls(x, v, f, inverse, area, walls, stiffness, damping, dt, i, j, anchors, out, give, press, pressed)
             if x[2, i, j] - z >= offset and anchors[i, j, 0, 0] >= FREE:
                 continue
             p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
@@ -233,7 +232,9 @@ def tool_forces(
             h = dt * inverse[i, j]
             ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
             a, up = area[i, j], (0.0, 0.0, 1.0)
-            rim = depth > offset and (i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, i, j) < depth)
+            rim = depth > offset and (
+                i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, walls, i, j) < depth
+            )
             rough, k_a, c_a = 0.0 if rim else mu, stiffness * a, damping * a
             if _point(p, u, ahead, p[2], up, offset, k_a, c_a, rough, dt, anchors[i, j, 0], out, give):
                 work += give[2] * speed * dt

@@ -38,6 +38,11 @@ tension anywhere. So each line takes one more backward Euler step, of that stiff
 after the family's last correction: a contraction. It resists the axial rates too, by T/(E h) of
 what the bars themselves do. Its impulses are not along the bars: where T varies along a line, angular momentum is
 lost at the rate dt T/(m R^2) for motions of size R (a few per cent a second in a formed ply; linear momentum is kept).
+
+In a half model (`dynamics.mirror`) lines that meet the mirror plane squarely end there, at nodes that move within it
+only: w becomes w (1 - (e.n)^2) in the pivot, and what acts on them along n is left out. Their inverse masses come with
+a minus sign. Where a line ends there at its last node the string's step takes it for free, which only makes its damping
+smaller.
 """
 
 from __future__ import annotations
@@ -57,7 +62,7 @@ def _forward(
 ):
     """One bar of every line: direction e, pivot s, reduced right side t; c belongs to the bar before (p...).
 
-    law = (1/a, dt^2 E h / a, dt E h / 2, dt).
+    law = (1/a, dt^2 E h / a, dt E h / 2, dt); y is normal to the mirror plane, if there is one.
     """
     inverse_a, stiff, pull, dt = law
     for j in range(width.shape[0]):
@@ -74,13 +79,15 @@ def _forward(
         tension = pull * width[j] * log * square * r * inverse_a
         kappa = stiff * width[j]
         cosine = dx * px[j] + dy * py[j] + dz * pz[j]
-        coupled = ma[j] * cosine
+        coupled = abs(ma[j]) * cosine
         before = ps[j] * coupled
         c[j] = before
         low = kappa * coupled
         strain = dx * (ub[j] - ua[j]) + dy * (vb[j] - va[j]) + dz * (wb[j] - wa[j])
         right = kappa * strain + tension - dt * kept[j]
-        inverse = 1.0 / (1.0 + kappa * (ma[j] + mb[j]) - low * before)
+        along = 1.0 - dy * dy
+        free = (ma[j] if ma[j] >= 0.0 else -ma[j] * along) + (mb[j] if mb[j] >= 0.0 else -mb[j] * along)
+        inverse = 1.0 / (1.0 + kappa * free - low * before)
         t[j] = (right + low * pt[j]) * inverse
         s[j] = kappa * inverse
         ex[j] = dx
@@ -95,12 +102,12 @@ def _correct(ua, va, wa, ub, vb, wb, ma, mb, ex, ey, ez, t, c, last, kept, per_d
         p = t[j] + c[j] * last[j]
         last[j] = p
         kept[j] += per_dt * p
-        pa, pb = ma[j] * p, mb[j] * p
+        pa, pb = abs(ma[j]) * p, abs(mb[j]) * p
         ua[j] += pa * ex[j]
-        va[j] += pa * ey[j]
+        va[j] += max(ma[j], 0.0) * p * ey[j]
         wa[j] += pa * ez[j]
         ub[j] -= pb * ex[j]
-        vb[j] -= pb * ey[j]
+        vb[j] -= max(mb[j], 0.0) * p * ey[j]
         wb[j] -= pb * ez[j]
 
 
@@ -117,17 +124,17 @@ def _correct_string(
         last[j] = p
         tension = kept[j] + per_dt * p
         kept[j] = tension
-        pa, pb = ma[j] * p, mb[j] * p
+        pa, pb = abs(ma[j]) * p, abs(mb[j]) * p
         ua[j] += pa * ex[j]
-        va[j] += pa * ey[j]
+        va[j] += max(ma[j], 0.0) * p * ey[j]
         wa[j] += pa * ez[j]
         s = max(tension, 0.0) * scale
-        after = mb[j] * s_after[j]
-        inverse = 1.0 / (1.0 + mb[j] * s + after * (1.0 - g_after[j]))
+        after = abs(mb[j]) * s_after[j]
+        inverse = 1.0 / (1.0 + abs(mb[j]) * s + after * (1.0 - g_after[j]))
         ub[j] = (ub[j] - pb * ex[j] + after * uc[j]) * inverse
-        vb[j] = (vb[j] - pb * ey[j] + after * vc[j]) * inverse
+        vb[j] = (vb[j] - pb * ey[j] + after * vc[j]) * inverse if mb[j] >= 0.0 else 0.0
         wb[j] = (wb[j] - pb * ez[j] + after * wc[j]) * inverse
-        g[j] = mb[j] * s * inverse
+        g[j] = abs(mb[j]) * s * inverse
         s_after[j] = s
 
 
@@ -135,30 +142,33 @@ def _correct_string(
 def _first_node(u, v, w, u1, v1, w1, mass, s, g):
     """Reduce the string's system by a line's first node: it is final then."""
     for j in range(u.shape[0]):
-        k = mass[j] * s[j]
+        k = abs(mass[j]) * s[j]
         inverse = 1.0 / (1.0 + k * (1.0 - g[j]))
         u[j] = (u[j] + k * u1[j]) * inverse
-        v[j] = (v[j] + k * v1[j]) * inverse
+        v[j] = (v[j] + k * v1[j]) * inverse if mass[j] >= 0.0 else 0.0
         w[j] = (w[j] + k * w1[j]) * inverse
 
 
 @njit(**FAST)
-def _substitute(ua, va, wa, ub, vb, wb, g):
+def _substitute(ua, va, wa, ub, vb, wb, mb, g):
     """Velocity of the next node of each line, given that of the one before."""
     for j in range(g.shape[0]):
         ub[j] += g[j] * ua[j]
-        vb[j] += g[j] * va[j]
+        vb[j] += g[j] * va[j] if mb[j] >= 0.0 else 0.0
         wb[j] += g[j] * wa[j]
 
 
 @njit(**FAST)
-def pull_lines(x, v, inverse_mass, bar, kept, law, string, a, b, work):
+def pull_lines(x, v, inverse_mass, bar, kept, law, string, mirror, a, b, work):
     """Correct the tension along the first grid direction, lines a..b-1; v and kept are changed in place.
 
-    x, v (3, n, m) [mm], [mm/s]; inverse_mass [1/tonne], bar (n, m) widths [mm]; kept (n, m) tensions [N], which are
+    x, v (3, n, m) [mm], [mm/s]; inverse_mass [1/tonne], below 0 on the mirror plane, which is normal to component
+    `mirror` (if any); bar (n, m) widths [mm]; kept (n, m) tensions [N], which are
     in v; law = (1/a, dt^2 E h / a, dt E h / 2, dt^2 / a, dt) in mm, s, N; string: whether to take the
     string's step as well; work (6 (n + 1) + 2, LINES).
     """
+    # the kernels above take the component normal to the mirror plane as the second one
+    r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
     n, w = x.shape[1], b - a
     per_dt = 1.0 / law[4]
     ahead = (law[0], law[1], law[2], law[4])
@@ -166,8 +176,8 @@ def pull_lines(x, v, inverse_mass, bar, kept, law, string, a, b, work):
     for i in range(n - 1):
         o, p = 6 * (i + 1), 6 * i  # rows of a bar: ex, ey, ez, s, t, c
         _forward(
-            x[0, i, a:b], x[1, i, a:b], x[2, i, a:b], x[0, i + 1, a:b], x[1, i + 1, a:b], x[2, i + 1, a:b],
-            v[0, i, a:b], v[1, i, a:b], v[2, i, a:b], v[0, i + 1, a:b], v[1, i + 1, a:b], v[2, i + 1, a:b],
+            x[r, i, a:b], x[q, i, a:b], x[s, i, a:b], x[r, i + 1, a:b], x[q, i + 1, a:b], x[s, i + 1, a:b],
+            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
             inverse_mass[i, a:b], inverse_mass[i + 1, a:b], bar[i, a:b], kept[i, a:b], ahead,
             work[o, :w], work[o + 1, :w], work[o + 2, :w], work[p, :w], work[p + 1, :w], work[p + 2, :w],
             work[o + 3, :w], work[p + 3, :w], work[o + 4, :w], work[p + 4, :w], work[p + 5, :w],
@@ -179,7 +189,7 @@ def pull_lines(x, v, inverse_mass, bar, kept, law, string, a, b, work):
         for i in range(n - 2, -1, -1):
             o = 6 * (i + 1)
             _correct(
-                v[0, i, a:b], v[1, i, a:b], v[2, i, a:b], v[0, i + 1, a:b], v[1, i + 1, a:b], v[2, i + 1, a:b],
+                v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
                 inverse_mass[i, a:b], inverse_mass[i + 1, a:b], work[o, :w], work[o + 1, :w], work[o + 2, :w],
                 work[o + 4, :w], work[o + 5, :w], last, kept[i, a:b], per_dt,
             )  # fmt: skip
@@ -187,24 +197,24 @@ def pull_lines(x, v, inverse_mass, bar, kept, law, string, a, b, work):
     for i in range(n - 2, -1, -1):
         o, k = 6 * (i + 1), min(i + 2, n - 1)  # the last node has none after it, and no string stiffness there
         _correct_string(
-            v[0, i, a:b], v[1, i, a:b], v[2, i, a:b], v[0, i + 1, a:b], v[1, i + 1, a:b], v[2, i + 1, a:b],
-            v[0, k, a:b], v[1, k, a:b], v[2, k, a:b], inverse_mass[i, a:b], inverse_mass[i + 1, a:b],
+            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
+            v[r, k, a:b], v[q, k, a:b], v[s, k, a:b], inverse_mass[i, a:b], inverse_mass[i + 1, a:b],
             work[o, :w], work[o + 1, :w], work[o + 2, :w], work[o + 4, :w], work[o + 5, :w], last,
             kept[i, a:b], per_dt, work[o + 3, :w], work[o + 9, :w], stiff, law[3],
         )  # fmt: skip
     _first_node(
-        v[0, 0, a:b], v[1, 0, a:b], v[2, 0, a:b], v[0, 1, a:b], v[1, 1, a:b], v[2, 1, a:b],
+        v[r, 0, a:b], v[q, 0, a:b], v[s, 0, a:b], v[r, 1, a:b], v[q, 1, a:b], v[s, 1, a:b],
         inverse_mass[0, a:b], stiff, work[9, :w],
     )  # fmt: skip
     for i in range(n - 1):
         _substitute(
-            v[0, i, a:b], v[1, i, a:b], v[2, i, a:b], v[0, i + 1, a:b], v[1, i + 1, a:b], v[2, i + 1, a:b],
-            work[6 * i + 9, :w],
+            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
+            inverse_mass[i + 1, a:b], work[6 * i + 9, :w],
         )  # fmt: skip
 
 
 @njit(**FAST)
-def pull_rows(x, v, inverse_mass, bar, kept, law, string, low, high, tile, work):
+def pull_rows(x, v, inverse_mass, bar, kept, law, string, mirror, low, high, tile, work):
     """The same along the second grid direction for rows low..high-1, at most LINES of them.
 
     tile (9, m, LINES) holds the rows turned, so that the lines lie side by side; work as in `pull_lines`.
@@ -219,7 +229,7 @@ def pull_rows(x, v, inverse_mass, bar, kept, law, string, low, high, tile, work)
             tile[6, j, r] = inverse_mass[low + r, j]
             tile[7, j, r] = bar[low + r, j]
             tile[8, j, r] = kept[low + r, j]
-    pull_lines(tile[0:3], tile[3:6], tile[6], tile[7], tile[8], law, string, 0, w, work)
+    pull_lines(tile[0:3], tile[3:6], tile[6], tile[7], tile[8], law, string, mirror, 0, w, work)
     for r in range(w):
         for c in range(3):
             for j in range(m):
@@ -241,7 +251,7 @@ def _bar_row(xa, ya, za, xb, yb, zb, kept, qx, qy, qz):
 def _add_row(v, q, factor, inverse_mass):
     """V <- v + factor q / m."""
     for j in range(q.shape[0]):
-        v[j] += factor * inverse_mass[j] * q[j]
+        v[j] += factor * abs(inverse_mass[j]) * q[j]
 
 
 @njit(**FAST)

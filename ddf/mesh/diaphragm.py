@@ -33,13 +33,14 @@ def mesh_diaphragm(
     element_mm: float,
     element_max_mm: float,
     growth: float,
+    even: bool = False,
 ) -> DiaphragmMesh:
     """Grid of a diaphragm clamped at x = +-length/2, y = +-width/2 [mm].
 
     Inside `fine_box` (xmin, xmax, ymin, ymax) [mm] cells are uniform and at most `element_mm`; outside each
     is at most `growth` times the one before, up to `element_max_mm`. The box is widened to the frame on a
-    side where too little is left to grade. The grid is exactly symmetric if the box is. Raises MeshError for
-    a box that leaves the frame or a growth below 1.
+    side where too little is left to grade. The grid is exactly symmetric if the box is; with `even` it has an
+    even number of cells along x and y. Raises MeshError for a box that leaves the frame or a growth below 1.
     """
     if not 0.0 < element_mm <= element_max_mm or not growth >= 1.0:
         raise MeshError(
@@ -47,8 +48,8 @@ def mesh_diaphragm(
             "they must satisfy 0 < element_mm <= element_max_mm and growth >= 1",
         )
     x_min, x_max, y_min, y_max = fine_box
-    x_blocks = _graded_blocks(length_mm / 2, x_min, x_max, element_mm, element_max_mm, growth)
-    y_blocks = _graded_blocks(width_mm / 2, y_min, y_max, element_mm, element_max_mm, growth)
+    x_blocks = _graded_blocks(length_mm / 2, x_min, x_max, element_mm, element_max_mm, growth, even)
+    y_blocks = _graded_blocks(width_mm / 2, y_min, y_max, element_mm, element_max_mm, growth, even)
     mesh_grid(x_blocks, y_blocks, 0.0, "diaphragm")
     x_lines = _symmetrised(block_lines(x_blocks))
     y_lines = _symmetrised(block_lines(y_blocks))
@@ -64,7 +65,9 @@ def _symmetrised(lines: FloatArray) -> FloatArray:
     return lines
 
 
-def _graded_blocks(half: float, low: float, high: float, element: float, largest: float, growth: float) -> list[Block]:
+def _graded_blocks(
+    half: float, low: float, high: float, element: float, largest: float, growth: float, even: bool
+) -> list[Block]:
     """Blocks from -half to half [mm] along one direction: capped, graded, uniform, graded, capped."""
     if not -half - 1e-9 <= low < high <= half + 1e-9:
         raise MeshError(
@@ -73,6 +76,7 @@ def _graded_blocks(half: float, low: float, high: float, element: float, largest
         )
     while True:
         cells = max(1, int(np.ceil((high - low) / element - 1e-9)))
+        cells += cells % 2 if even else 0
         actual = (high - low) / cells
         left = _grade(low + half, actual, largest, growth)
         right = _grade(half - high, actual, largest, growth)

@@ -36,8 +36,6 @@ class PlyMesh:
     """Part of each cell that is fabric, (n-1, m-1); 0 where left out (tiny or slit)."""
     active: NDArray[np.bool_]
     """(n, m): nodes of at least one cell with a fraction above 0."""
-    row_span: IntArray
-    """(n, 2): first and last+1 active node of each row i; 0, 0 if it has none."""
     outline: list[FloatArray]
     """Closed loops (k, 2) of material points (u, v), no segment over half an element: the boundary
     counterclockwise, then the holes clockwise."""
@@ -77,6 +75,7 @@ def mesh_ply(
     element_mm: float,
     offset: tuple[float, float] = (0.0, 0.0),
     name: str = "ply-1",
+    even: bool = False,
 ) -> PlyMesh:
     """Lattice of a ply with the outline `polygon` (k, 2) [mm] less `holes`, moved by `offset` [mm].
 
@@ -85,6 +84,7 @@ def mesh_ply(
     as close to `element_mm` as whole numbers allow); otherwise they measure exactly `element_mm` and the
     lattice is centred on the outline's box in fibre axes. Cut cells carry their exact area fraction, set to
     0 under 0.02. A slit (polyline (p, 2), zero width) takes out the cells it crosses: it is one cell wide.
+    With `even` the numbers of cells along both families are even.
     Raises MeshError for an outline that is not simple or smaller than two elements.
     """
     if not element_mm > 0.0:
@@ -92,7 +92,7 @@ def mesh_ply(
     angle = np.deg2rad(orientation_deg)
     to_fibre = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     loops = [(loop + np.asarray(offset)) @ to_fibre.T for loop in clean_outline(polygon, list(holes), name)]
-    blocks = _fit_lattice(loops[0], element_mm, name)
+    blocks = _fit_lattice(loops[0], element_mm, name, even)
     x = mesh_grid([blocks[0]], [blocks[1]], orientation_deg, name)
     start = np.array([b.start for b in blocks])
     spacing = np.array([(b.stop - b.start) / b.cells for b in blocks])
@@ -114,7 +114,6 @@ def mesh_ply(
         spacing=(a1, a2),
         cell_fraction=fraction,
         active=active,
-        row_span=_row_span(active),
         outline=[points for points, _ in samples],
         corners=[corners for _, corners in samples],
         outline_cells=[_fabric_cells(points, fraction) for points, _ in samples],
@@ -123,7 +122,7 @@ def mesh_ply(
     )
 
 
-def _fit_lattice(outer: FloatArray, element_mm: float, name: str) -> list[Block]:
+def _fit_lattice(outer: FloatArray, element_mm: float, name: str, even: bool) -> list[Block]:
     """The extent and number of cells of the lattice along both families, for the outline in fibre axes."""
     low, high = outer.min(axis=0), outer.max(axis=0)
     size = high - low
@@ -133,9 +132,11 @@ def _fit_lattice(outer: FloatArray, element_mm: float, name: str) -> list[Block]
             f"make element_mm smaller than {0.5 * size.min():.4g}",
         )
     if abs(signed_area(outer) - size[0] * size[1]) < 1e-9 * size[0] * size[1]:
-        cells = np.round(size / element_mm).astype(np.int64)
+        step = 2 if even else 1
+        cells = step * np.round(size / (step * element_mm)).astype(np.int64)
     else:
         cells = np.ceil(size / element_mm - 1e-9).astype(np.int64)
+        cells += cells % 2 if even else 0
         middle = 0.5 * (low + high)
         low, high = middle - 0.5 * cells * element_mm, middle + 0.5 * cells * element_mm
     return [Block(float(a), float(b), int(c)) for a, b, c in zip(low, high, cells, strict=True)]
@@ -146,13 +147,6 @@ def _active_nodes(fraction: FloatArray) -> NDArray[np.bool_]:
     live = np.pad(fraction, 1) > 0.0
     active: NDArray[np.bool_] = live[1:, 1:] | live[:-1, 1:] | live[1:, :-1] | live[:-1, :-1]
     return active
-
-
-def _row_span(active: NDArray[np.bool_]) -> IntArray:
-    """(n, 2): first and last+1 active node of each row, 0, 0 if none."""
-    first = active.argmax(axis=1)
-    last = active.shape[1] - active[:, ::-1].argmax(axis=1)
-    return np.where(active.any(axis=1, keepdims=True), np.stack([first, last], axis=1), 0).astype(np.int64)
 
 
 def _fabric_cells(points: FloatArray, fraction: FloatArray) -> IntArray:

@@ -63,11 +63,11 @@ class Runner:
         self.start_x = scene.state.x.copy()
         self.sim = Simulation(scene, threads)
         self.names = [sheet.name for sheet in scene.sheets]
-        self.frames = FrameWriter(out, scene) if scene.case.output.vtu else None
+        self.frames = FrameWriter(out, scene.whole()) if scene.case.output.vtu else None
         self.frame_times = _frame_times(scene)
         self.frames_done = 0
         self.steps = scene.steps
-        self.energy: Energies = energies(scene.model, scene.state)
+        self.energy: Energies = self._energies()
         self.earlier_wall = 0.0
         self.history: HistoryWriter | None = None
         self.good = State(*(array.copy() for array in scene.state))  # the last state that all guards have passed
@@ -99,7 +99,7 @@ class Runner:
         self.sim.recount()
         self.steps = self.scene.steps
         self.frame_times = _frame_times(self.scene)
-        self.energy = energies(self.scene.model, self.scene.state)
+        self.energy = self._energies()
         self.history = HistoryWriter(self.out, self.names, self.sim.step)
         self._end_if_settled()
         if self.frames is not None:
@@ -193,7 +193,7 @@ class Runner:
         """History, energy guard and frames that are due."""
         sim, scene = self.sim, self.scene
         if self._is_history_step():
-            self.energy = energies(scene.model, scene.state)
+            self.energy = self._energies()
             wall = self.earlier_wall + clock.perf_counter() - began
             assert self.history is not None
             self.history.append(
@@ -206,8 +206,13 @@ class Runner:
         due = int(np.searchsorted(self.frame_times, sim.time + 1e-12, side="right"))
         if due > self.frames_done:  # several may be due at a time: they are one
             if self.frames is not None:
-                self.frames.write(take_snapshot(scene, scene.state))
+                whole = scene.whole()
+                self.frames.write(take_snapshot(whole, whole.state))
             self.frames_done = due
+
+    def _energies(self) -> Energies:
+        whole = self.scene.whole()
+        return energies(whole.model, whole.state)
 
     def _is_history_step(self) -> bool:
         """Whether energies are looked at now."""

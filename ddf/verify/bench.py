@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +35,7 @@ from ddf.model import (
     State,
     sheet_scalars,
     sheet_vectors,
+    without_mirror,
 )
 from ddf.scene import Scene
 from ddf.simulate import Simulation
@@ -86,14 +87,16 @@ def assemble(
     stiff = tool.stiffness if tool else 0.0
     tool_damping = timestep.contact_damping(tool.damping, stiff, mass0, math.inf) if tool else 0.0
     lines = [np.concatenate([np.diff(s.lines[0]), np.diff(s.lines[1])]) for s in sheets]
+    pools, blocks = _pools(sheets, records), row_blocks(records)
     model = Model(
-        sheets=records, blocks=row_blocks(records), pairs=pairs, **_pools(sheets, records), lines=np.concatenate(lines),
+        sheets=records, blocks=blocks, pairs=pairs, **pools, **without_mirror(pools["inverse_mass"], len(blocks)),
+        lines=np.concatenate(lines), tool_lines=np.concatenate(lines),
         shear_tables=tables, tangents=np.zeros((1, 1)), ogden=_terms(sheets), exposed=exposed,
         tool=tool.field.values if tool else np.zeros((2, 2, 2, 4), np.float32),
         tool_origin=np.asarray(tool.field.origin, dtype=float) if tool else np.zeros(3),
         tool_spacing=float(tool.field.spacing) if tool else 1.0, tool_sheet=0 if tool else -1,
         tool_offset=0.5 * sheets[0].thickness, tool_stiffness=stiff, tool_damping=tool_damping, tool_mass=mass0,
-        tool_friction=tool.friction if tool else 0.0, tool_boxed=False,
+        tool_friction=tool.friction if tool else 0.0, tool_boxed=False, tool_walls=np.zeros(4),
         summits=np.zeros((0, SUMMIT)), gravity=np.asarray(gravity, dtype=float),
         dt=_step(sheets, touches),
     )  # fmt: skip
@@ -135,7 +138,7 @@ def _ends_halved(count: int) -> FloatArray:
     return np.concatenate([[0.5], np.ones(count - 2), [0.5]])
 
 
-def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray]:
+def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, Any]:
     """Node pools of the model. Held nodes have no contact area of their own: they are no part of a balance."""
     parts: dict[str, list[np.ndarray]] = {}
 
@@ -156,12 +159,10 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, np.ndarray
             mass=mass.ravel(), inverse_mass=np.where(s.held, 0.0, 1.0 / (s.areal_mass * area)).ravel(),
             area=np.where(s.held, 0.0, area).ravel(), bar1=bar1.ravel(), bar2=bar2.ravel(),
             cell=np.pad(s.cells, ((0, 1), (0, 1))).ravel(), triple1=triple1.ravel(), triple2=triple2.ravel(),
-            row_span=np.tile(np.array([0, m], np.int64), (n, 1)), weight=tangent_weights(bar1, bar2).ravel(),
+            weight=tangent_weights(bar1, bar2).ravel(),
             centre=patch_centres(np.ones((n, m), bool)).ravel(), cover=np.ones(n * m),
         )  # fmt: skip
-    pools = {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
-    pools["row_first"] = np.cumsum([0, *(int(n) for n in records["rows"][:-1])]).astype(np.int64)
-    return pools
+    return {name: np.ascontiguousarray(np.concatenate(part)) for name, part in parts.items()}
 
 
 def _places(points: FloatArray, surface: FloatArray) -> FloatArray:

@@ -47,7 +47,11 @@ class Probe:
     def __init__(self, scene: Scene, k: int = 0) -> None:
         model, self.k = scene.model, k
         still = model._replace(
-            mass=np.zeros_like(model.mass), inverse_mass=np.ones_like(model.mass), gravity=np.zeros(3), dt=PROBE_STEP_S
+            mass=np.zeros_like(model.mass),
+            inverse_mass=np.ones_like(model.mass),
+            line_mass=np.ones_like(model.mass),
+            gravity=np.zeros(3),
+            dt=PROBE_STEP_S,
         )
         self.start = copied_state(scene.state)
         self.scene = replace(scene, model=still, state=copied_state(scene.state))

@@ -20,7 +20,7 @@ from ddf.elements.shell_membrane.rotations import normals
 from ddf.errors import DdfError, UnstableError
 from ddf.loads.path import LoadPath
 from ddf.materials import shear_law
-from ddf.model import Model, State, sheet_shells, sheet_vectors
+from ddf.model import Model, State, sheet_shells, sheet_vectors, without_mirror
 from ddf.scene import Scene
 from ddf.simulate import Simulation
 from ddf.verify.problem import LATTICE, SHELL_MEMBRANE, FloatArray, Options
@@ -109,20 +109,19 @@ def alone(scene: Scene, k: int) -> Scene:
     """The scene with sheet k only: no other sheet, no contact, no tool."""
     model = scene.model
     sheet = model.sheets[k]
-    n, first, rows = int(sheet["rows"] * sheet["cols"]), int(sheet["node"]), int(sheet["rows"])
+    n, first = int(sheet["rows"] * sheet["cols"]), int(sheet["node"])
     blocks = model.blocks[model.blocks["sheet"] == k].copy()
     blocks["sheet"] = 0
     sheets = model.sheets[k : k + 1].copy()
     sheets["node"] = sheets["shell"] = 0
-    spans = int(model.row_first[k])
+    sheets["bed"] = 0.0
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
     small = model._replace(
         sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,
-        row_span=model.row_span[spans : spans + rows].copy(), row_first=np.zeros(1, np.int64),
         weight=model.weight[4 * first : 4 * (first + n)].copy(),
         centre=model.centre[2 * first : 2 * (first + n)].copy(),
-        exposed=model.exposed[:0], tool_sheet=-1,
+        exposed=model.exposed[:0], tool_sheet=-1, **without_mirror(pools["inverse_mass"], len(blocks)),
     )  # fmt: skip
     x = scene.state.x[3 * first : 3 * (first + n)].copy()
     return replace(scene, model=small, state=state_at_rest(small, x, np.zeros(0)), sheets=(scene.sheets[k],))
@@ -154,7 +153,7 @@ def held(scene: Scene, mask: NDArray[np.bool_], k: int = 0) -> Scene:
     first = int(model.sheets[k]["node"])
     place = first + np.flatnonzero(mask)
     mass[place] = inverse[place] = 0.0
-    return replace(scene, model=model._replace(mass=mass, inverse_mass=inverse))
+    return replace(scene, model=model._replace(mass=mass, inverse_mass=inverse, line_mass=inverse))
 
 
 def directors(scene: Scene, k: int = 0) -> FloatArray:

@@ -68,9 +68,9 @@ def _pull_all(x, v, inverse, bar1, bar2, kept, law, turned, lines):
     """Both families twice, as in a step."""
     for sweep in range(2):
         for a in range(0, x.shape[2], LINES):
-            pull_lines(x, v, inverse, bar1, kept, law, sweep == 1, a, min(a + LINES, x.shape[2]), lines)
+            pull_lines(x, v, inverse, bar1, kept, law, sweep == 1, -1, a, min(a + LINES, x.shape[2]), lines)
         for a in range(0, x.shape[1], LINES):
-            pull_rows(x, v, inverse, bar2, kept, law, sweep == 1, a, min(a + LINES, x.shape[1]), turned, lines)
+            pull_rows(x, v, inverse, bar2, kept, law, sweep == 1, -1, a, min(a + LINES, x.shape[1]), turned, lines)
 
 
 def _note(benchmark, count, unit="node"):

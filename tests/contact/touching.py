@@ -118,7 +118,7 @@ class Tool:
             carry = np.zeros((m + 2, PRESS))
             work, _ = tool_forces(
                 x, v, others, inverse, self.press, pressed, carry, self.area, self.dx, self.dy,
-                self.values, self.origin, self.spacing, self.law, False, (z, speed), 1e6, dt,
+                self.values, self.origin, self.spacing, self.law, (False, np.zeros(4)), (z, speed), 1e6, dt,
                 self.anchors, sleep, low, high, self.out, np.zeros(PRESS),
             )  # fmt: skip
             self.work += work

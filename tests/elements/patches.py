@@ -122,11 +122,11 @@ def pull(patch, x, v, inverse_mass, dt, family, bundle=LINES, kept=None, string=
     if family == 1:
         for a in range(0, m, bundle):
             work = np.full((6 * (n + 1) + 2, LINES), np.nan)
-            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, string, a, min(m, a + bundle), work)
+            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, string, -1, a, min(m, a + bundle), work)
     else:
         for a in range(0, n, bundle):
             work, turned = np.full((6 * (m + 1) + 2, LINES), np.nan), np.full((9, m, LINES), np.nan)
-            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, string, a, min(n, a + bundle), turned, work)
+            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, string, -1, a, min(n, a + bundle), turned, work)
     return v
 
 

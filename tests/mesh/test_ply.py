@@ -21,7 +21,6 @@ def test_aligned_square_is_fitted_exactly():
     assert ply.spacing == pytest.approx((100 / 33, 100 / 33))
     assert (ply.cell_fraction == 1.0).all()
     assert ply.active.all()
-    assert (ply.row_span == [0, 34]).all()
     assert ply.area_mm2 == pytest.approx(1e4, rel=1e-12)
 
 
@@ -97,12 +96,6 @@ def test_outline_is_resampled_and_placed(angle):
     live = ply.outline_cells[0]
     assert (ply.cell_fraction[live[:, 0], live[:, 1]] > 0.0).all()
     assert ply.active[live[:, 0], live[:, 1]].all()
-
-
-def test_row_span_of_a_turned_square():
-    ply = mesh_ply(SQUARE, [], [], 45.0, 3.0)
-    for row, (first, last) in zip(ply.active, ply.row_span, strict=True):
-        assert (np.flatnonzero(row)[[0, -1]] == (first, last - 1)).all() if row.any() else last == 0
 
 
 @pytest.mark.parametrize("slit", [[[-60.0, 1.0], [60.0, 1.0]], [[-60.0, 0.0], [60.0, 0.0]], [[-60, -60], [60, 60]]])
