@@ -130,7 +130,7 @@ def _half(scene: Scene, axis: int) -> Scene:
     half = Half(
         axis=axis, whole=whole, start=scene.state,
         source=tuple(g.source for g in grids), flipped=tuple(g.flipped for g in grids),
-        corner=tuple((g.rows.start, g.cols.start) for g in grids), begins=tuple(g.begin for g in grids),
+        corner=tuple((g.rows.start, g.cols.start) for g in grids), 
         turn=tuple(g.turn for g in grids),
     )  # fmt: skip
     return replace(scene, model=model, state=state_at_rest(model, x, places), half=half)
@@ -162,8 +162,6 @@ class _Grid:
         self.side = np.where(np.abs(self.x[axis]) < SAME_MM, 0.0, np.sign(self.x[axis]))
         self.x[axis][self.side == 0.0] = 0.0
         self.across, self.axis = self.x[axis], axis
-        begin = np.argwhere((self.side >= 0.0) & self.kept).min(axis=0)
-        self.begin = (int(begin[0]), int(begin[1]))
         self.source, self.flipped = self._sources(flat[:2], exists)
         self.turn = self._turn(flat[:2])
         real = np.flatnonzero((self.side > 0.0) & self.kept)
