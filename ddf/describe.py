@@ -65,6 +65,10 @@ def describe_scene(scene: Scene) -> str:
     else:
         top = scene.tool_mesh.top_mm if scene.tool_mesh is not None else 0.0
         lines.append(f"  tool: {case.tool.shape}, highest point {top:.2f} mm above its base (fillet included)")
+    if scene.half is not None:
+        lines.append(f"  symmetry: its own mirror image; {scene.half.where} is computed, and the rest is its image")
+    elif scene.symmetry:
+        lines.append(f"  symmetry: {scene.symmetry}; all of it is computed")
     lines += ["", "process"]
     path = scene.path
     for k, name in enumerate(path.names):

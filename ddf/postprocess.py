@@ -110,6 +110,8 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
         + ("1 thread" if info["threads"] == 1 else f"{info['threads']} threads"),
         "added mass": f"{added:.0f} g",
     }  # fmt: skip
+    if "half_model" in info:
+        key_numbers["half model"] = f"{info['half_model']} was computed"
     if "fidelity" in info:
         key_numbers["fidelity, chosen"] = f"{info['fidelity']['rung']} ({info['fidelity']['why']})"
     report = Report(

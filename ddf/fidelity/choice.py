@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from ddf.build import build_scene, load_path
 from ddf.case import Case
 from ddf.case.load import load_case
 from ddf.describe import seconds_estimate, speedup
-from ddf.errors import CaseError, UsageError
+from ddf.errors import CaseError, MeshError, UsageError
 from ddf.fidelity.ladder import LADDER, MEASURED_SIDE_MM, Rung, at, shorter_side
 from ddf.fidelity.rules import obstacle
 
@@ -41,6 +42,7 @@ class Choice:
     why: str
     threads: int
     seconds: float | None  # what was asked for, if it was that
+    symmetric: bool  # whether the scene is computed by half
 
     @property
     def case(self) -> Case:
@@ -65,7 +67,10 @@ class Choice:
         if self.chosen.rung.ply_mm is None:
             found.append("  a net shows shear and outline of a ply, no wrinkles, no friction, no bridging")
         else:
-            found.append("  plies are lattices, diaphragms bend, sheets touch themselves where they fold (all rungs)")
+            found.append(
+                "  plies are lattices, diaphragms bend, sheets touch themselves where they fold; a scene that is its "
+                f"own mirror image is computed by half: this one is{'' if self.symmetric else ' not'} (all rungs)"
+            )
         return found
 
     def record(self) -> dict[str, Any]:
@@ -103,20 +108,21 @@ def choose(case: Case, threads: int, earlier: Path | None = None) -> Choice:
     target = case.target
     assert target is not None
     scale = shorter_side(case) / MEASURED_SIDE_MM
-    steps = tuple(_step(case, rung, threads, scale) for rung in LADDER)
+    symmetric = _is_symmetric(case)
+    steps = tuple(_step(case, rung, threads, scale, symmetric) for rung in LADDER)
     valid = [step for step in steps if not step.obstacle]
     if not valid:
         reasons = "\n".join(f"  {step.rung.name}: {step.obstacle}" for step in steps)
         raise UsageError(f"no rung of the ladder is valid for this case:\n{reasons}", "fidelity = 'as-given'")
     kept = _kept(valid, earlier)
     if kept is not None:
-        return Choice(kept, steps, "as the run was begun", threads, target.seconds)
+        return Choice(kept, steps, "as the run was begun", threads, target.seconds, symmetric)
     if target.seconds is not None:
         best, why = _closest(valid, target.seconds)
     else:
         assert target.accuracy_mm is not None
         best, why = _cheapest(valid, target.accuracy_mm)
-    return Choice(best, steps, why, threads, target.seconds)
+    return Choice(best, steps, why, threads, target.seconds, symmetric)
 
 
 def _closest(valid: list[Step], seconds: float) -> tuple[Step, str]:
@@ -133,7 +139,16 @@ def _cheapest(valid: list[Step], error_mm: float) -> tuple[Step, str]:
     return min(valid, key=lambda step: step.error_mm), f"the closest: none that is valid is within {error_mm:g} mm"
 
 
-def _step(case: Case, rung: Rung, threads: int, scale: float) -> Step:
+def _is_symmetric(case: Case) -> bool:
+    """Whether the scene is its own mirror image, and computed by half."""
+    for rung in LADDER:
+        if rung.ply_mm is not None:
+            with suppress(CaseError, MeshError):
+                return build_scene(at(case, rung)).half is not None
+    return False
+
+
+def _step(case: Case, rung: Rung, threads: int, scale: float, symmetric: bool) -> Step:
     error = round(scale * rung.error_mm, 4)
     try:
         there = at(case, rung)
@@ -142,7 +157,9 @@ def _step(case: Case, rung: Rung, threads: int, scale: float) -> Step:
     why = obstacle(there, rung)
     seconds = math.nan if why else NET_SECONDS
     if not why and rung.ply_mm is not None:  # the tool costs next to nothing in a step, and seconds to mesh
-        seconds = seconds_estimate(build_scene(there.model_copy(update={"tool": None}))) / speedup(threads)
+        solver = there.solver if symmetric else there.solver.model_copy(update={"symmetry": "off"})
+        bare = there.model_copy(update={"tool": None, "solver": solver})
+        seconds = seconds_estimate(build_scene(bare)) / speedup(threads)
     return Step(rung, there, seconds, error, why)
 
 

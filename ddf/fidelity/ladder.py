@@ -8,7 +8,7 @@ the ply's shorter side, the same number of elements across it: what is expected 
 
 The same on every rung, because measured there: plies are lattices (shell-membrane plies cost 41 times as much and
 give the same part), diaphragms bend (without it 21 wrinkles more), sheets touch themselves where they fold (2 % of the
-time). Half models of symmetric scenes are not built.
+time). Scenes that are their own mirror image are computed by half, in three fifths of the time.
 """
 
 from __future__ import annotations
@@ -77,6 +77,7 @@ def at(case: Case, rung: Rung) -> Case:
         "diaphragms.element_max_mm": max(case.diaphragms.element_max_mm, skin),
         "diaphragms.bending": True,
         "solver.self_contact": True,
+        "solver.symmetry": "auto",
     }
     for k in range(len(case.plies)):
         changes |= {f"plies.{k}.element_mm": element, f"plies.{k}.formulation": "lattice"}

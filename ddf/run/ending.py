@@ -53,6 +53,8 @@ def write_info(runner: Runner, reason: str, message: str, checks: list[Check] | 
         "mesh": mesh_summary(scene),
         "audit": checks or [],
     }
+    if scene.half is not None:
+        info["half_model"] = scene.half.where
     if runner.choice is not None:
         info["fidelity"] = runner.choice.record()
     runner.out.write_json("run.json", info)

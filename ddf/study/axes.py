@@ -19,6 +19,7 @@ Value = float | str
 
 LATTICE, SHELL, NET = "lattice", "shell-membrane", "net"
 ON, OFF = "on", "off"
+HALF, WHOLE = "half", "whole"
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,10 @@ def _self_contact(case: Case, value: Value, done: Changes) -> Changes:
     return {"solver.self_contact": value == ON}
 
 
+def _symmetry(case: Case, value: Value, done: Changes) -> Changes:
+    return {"solver.symmetry": "auto" if value == HALF else "off"}
+
+
 def _mm(size: float) -> float:
     """A size to a thousandth of a millimetre, as a person would write it."""
     return round(size, 3)
@@ -137,6 +142,11 @@ AXES: dict[str, Axis] = {
         Axis(
             "self-contact", "of sheets that fold", (OFF, ON), lambda case: ON if case.solver.self_contact else OFF,
             _self_contact, lambda _, value: f"self-contact-{value}", choices=(OFF, ON),
+        ),
+        Axis(
+            "symmetry", "half model, of a scene that is its own image", (HALF, WHOLE),
+            lambda case: HALF if case.solver.symmetry == "auto" else WHOLE, _symmetry, lambda _, value: str(value),
+            choices=(HALF, WHOLE),
         ),
         Axis(
             "formulation", "of the plies", (NET, SHELL, LATTICE), _own_formulation, _formulation,
