@@ -1,0 +1,108 @@
+"""The tool bears plies through the diaphragm: rest, energy, and a formed apex without crossings."""
+
+import numpy as np
+import pytest
+
+from ddf.build.sheets import _bed
+from ddf.contact.bed import BED, bear, find_borne, lose
+
+H, STIFFNESS, MASS, AREA = 1.25, 100.0, 3e-8, 4.0
+
+
+class Node:
+    """A ply's node over a flat tool, z = 0 at its face; other impulses as the step gathers them."""
+
+    def __init__(self, height, speed, tilt_deg=0.0):
+        t = np.radians(tilt_deg)
+        self.normal = np.array([np.sin(t), 0.0, np.cos(t)])
+        axis = np.arange(-10.0, 11.0)
+        points = np.array(np.meshgrid(axis, axis, axis, indexing="ij"))
+        d = np.tensordot(self.normal, points, 1)
+        gradient = np.broadcast_to(self.normal[:, None, None, None], points.shape)
+        self.field = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32)), np.full(3, -10.0), 1.0
+        self.x = (height * self.normal).reshape(3, 1, 1)
+        self.v = (speed * self.normal).reshape(3, 1, 1)
+        self.inverse, self.area = np.full((1, 1), 1.0 / MASS), np.full((1, 1), AREA)
+        self.sleep, self.borne, self.bed = np.zeros((1, 1), np.int16), np.zeros((1, 1), bool), np.zeros((1, 1, BED))
+        self.stored = self.lost = self.tool_work = self.force = 0.0
+
+    def step(self, dt, load, motion=(0.0, 0.0), keep=1.0):
+        """One step under a load (3,) [N]; returns the load's work."""
+        self.stored, lost = find_borne(
+            self.x, self.v, self.area, self.inverse, *self.field, (H, STIFFNESS), motion, 1.0, dt,
+            self.sleep, self.borne, self.bed, 0, 1,
+        )  # fmt: skip
+        self.lost += lost
+        before = keep * self.v[:, 0, 0]
+        self.v[:, 0, 0] = before + dt * load / MASS
+        f = np.zeros((3, 1, 1))
+        _, work, lost = bear(self.v, f, self.inverse, self.borne, self.bed, motion, keep, dt, 0, 1)
+        self.force = float(f[:, 0, 0] @ self.normal)
+        self.tool_work += work
+        self.lost += lost + lose(self.v, self.borne, self.bed, motion, dt, 0, 1)
+        self.x += dt * self.v
+        return dt * load @ (0.5 * (before + self.v[:, 0, 0]))
+
+    def kinetic(self):
+        return 0.5 * MASS * float((self.v**2).sum())
+
+
+@pytest.mark.parametrize("tilt", [0.0, 30.0])
+def test_a_node_at_rest_is_borne_by_its_load_and_no_more(tilt):
+    """Also where dt^2 K A is ten times the mass: what other impulses bring in is part of the implicit step."""
+    node, dt = Node(H - 0.01, 0.0, tilt), 2.5e-5
+    load = -20.0 * node.normal
+    for _ in range(4000):
+        node.step(dt, load, keep=0.99)
+    assert abs(float(node.v[:, 0, 0] @ node.normal)) < 1e-6
+    assert node.force == pytest.approx(20.0, rel=1e-9)
+    assert float(node.x[:, 0, 0] @ node.normal) == pytest.approx(H - 20.0 / (STIFFNESS * AREA), rel=1e-5)
+
+
+@pytest.mark.parametrize("dt", [2.5e-5, 2.5e-6])
+@pytest.mark.parametrize("tilt", [0.0, 30.0])
+def test_energy_of_a_node_that_is_thrown_on_is_all_accounted_for(dt, tilt):
+    node = Node(H + 0.05, -400.0, tilt)
+    begun, done = node.kinetic(), 0.0
+    load = -5.0 * node.normal
+    for _ in range(int(2e-3 / dt)):
+        done += node.step(dt, load)
+    node.stored, _ = find_borne(
+        node.x, node.v, node.area, node.inverse, *node.field, (H, STIFFNESS), (0.0, 0.0), 1.0, dt,
+        node.sleep, node.borne, node.bed, 0, 1,
+    )  # fmt: skip
+    balance = begun + done - node.kinetic() - node.stored - node.lost
+    assert abs(balance) < 1e-4 * begun
+    assert node.lost > 0.0
+
+
+def test_a_rising_tool_works_on_what_it_bears():
+    node, dt, speed = Node(H, 0.0), 2.5e-5, 300.0
+    z, done = 0.0, 0.0
+    load = np.array([0.0, 0.0, -20.0])
+    for _ in range(400):
+        done += node.step(dt, load, motion=(z, speed))
+        z += dt * speed
+    assert node.v[2, 0, 0] == pytest.approx(speed, rel=1e-3)
+    assert node.tool_work == pytest.approx(-done + node.kinetic() + node.stored + node.lost, rel=0.02)
+    assert -done == pytest.approx(20.0 * z, rel=0.02)
+
+
+def test_a_node_far_away_sleeps_and_held_ones_are_left_alone():
+    node = Node(H + 5.0, 0.0)
+    node.step(1e-6, np.zeros(3))
+    assert node.sleep[0, 0] > 0
+    held = Node(H - 0.5, 0.0)
+    held.inverse[:] = 0.0
+    held.step(1e-6, np.zeros(3))
+    assert not held.borne.any()
+
+
+def test_beds_lie_below_where_layers_touch_and_above_one_another():
+    skin, fabric = 1.5, 0.5
+    touch = [0.5 * skin + skin + fabric * (k + 0.5) - 0.5 * skin for k in range(4)]
+    beds = [_bed([skin] + [fabric] * (k + 1)) for k in range(4)]
+    assert beds[0] == pytest.approx(0.5 * skin + 0.5 * 0.5 * (skin + fabric))
+    assert all(bed < place for bed, place in zip(beds, touch, strict=True))
+    assert beds == sorted(beds)
+    assert beds[-1] <= 0.5 * skin + 0.75 * 0.5 * (skin + fabric)
