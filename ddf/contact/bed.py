@@ -11,10 +11,11 @@ where all layers in between would be pressed in by half of these distances, are 
 
     F = K A (h - d) - dt K A n.v'    along n, the gradient of the distance d, where F > 0
 
-K as of `contact.tool`, stiffer with depth as there, v' the velocity that comes of F and of all other impulses of the
-step, those of the kept fibre tensions too: (m + dt^2 K A) of the node's motion along n in place of m. There is no
-friction in it: that is between the layers. The spring's energy counts with the tool's; what the rate takes is booked
-as the tool's damping, on the node's mean velocity of the step.
+K half of that of `contact.tool` (with all of it, and stiffer with depth as there, stacks of plies on apexes of regular
+tetrahedra never came to rest, three of three), v' the velocity that comes of F and of all other impulses of the step,
+those of the kept fibre tensions too: (m + dt^2 K A) of the node's motion along n in place of m. There is no friction in
+it: that is between the layers. The spring's energy counts with the tool's; what the rate takes is booked as the tool's
+damping, on the node's mean velocity of the step.
 """
 
 from __future__ import annotations
@@ -22,8 +23,11 @@ from __future__ import annotations
 from numba import njit
 
 from ddf.contact.field import sample
-from ddf.contact.tool import LONGEST_SLEEP, penalty, stiffer
+from ddf.contact.tool import LONGEST_SLEEP
 from ddf.jit import FAST
+
+SHARE = 0.5
+"""Of the tool's stiffness [N/mm3]."""
 
 #: columns of what bears a node: spring force [N], its rate coefficient [N s/mm], normal (3), velocity before (3) [mm/s]
 BED = 8
@@ -56,14 +60,13 @@ def find_borne(x, v, area, inverse, tool, origin, spacing, law, motion, reach, d
             rate = nx * v[0, i, j] + ny * v[1, i, j] + nz * (v[2, i, j] - speed)
             k = stiffness * area[i, j]
             before, now = max(0.0, dt * rate - near), max(0.0, -near)
-            spring, energy = penalty(k, now)
-            if max(before, now) > 0.0 and (min(before, now) == 0.0 or stiffer(before) != stiffer(now)):
-                held, left = penalty(k, before)  # the mean force acts on the way, but stores less where it has a kink
-                lost -= 0.5 * (spring + held) * dt * rate + energy - left
+            spring, energy = k * now, 0.5 * k * now * now
+            if max(before, now) > 0.0 and min(before, now) == 0.0:  # the mean force acts on all of the way
+                lost -= 0.5 * k * (now + before) * dt * rate + energy - 0.5 * k * before * before
             if now > 0.0:
                 stored += energy
                 borne[i, j] = True
-                bed[i, j, 0], bed[i, j, 1] = spring, dt * k * stiffer(now)
+                bed[i, j, 0], bed[i, j, 1] = spring, dt * k
                 bed[i, j, 2], bed[i, j, 3], bed[i, j, 4] = nx, ny, nz
                 for c in range(3):
                     bed[i, j, 5 + c] = v[c, i, j]

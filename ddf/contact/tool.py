@@ -53,14 +53,14 @@ PRESS = 12
 
 
 @njit(**INLINE)
-def penalty(k, depth):
+def _spring(k, depth):
     """Force of the penalty at a depth, and what it stores."""
     hard, harder = max(0.0, depth - HARD), max(0.0, depth - HARDER)
     return k * (depth + 2.0 * hard + 3.0 * harder), 0.5 * k * (depth**2 + 2.0 * hard**2 + 3.0 * harder**2)
 
 
 @njit(**INLINE)
-def stiffer(depth):
+def _times(depth):
     """How many times as stiff the penalty is at a depth."""
     return 6.0 if depth > HARDER else 3.0 if depth > HARD else 1.0
 
@@ -88,22 +88,22 @@ def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
         if anchor[0] < FREE:
             before = max(0.0, dt * rate - near)
             out[3] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
-            spring, stored = penalty(k, before)
+            spring, stored = _spring(k, before)
             out[3] += stored - 0.5 * spring * dt * rate
         anchor[0] = FREE
         return False
     px, py, pz = p
-    spring, stored = penalty(k, -near)
+    spring, stored = _spring(k, -near)
     drag = TANGENTIAL * (c + dt * k)
-    c += dt * k * stiffer(-near)
+    c += dt * k * _times(-near)
     inertia = dt * c
     pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
     normal = spring - c * rate if pushed else 0.0
     out[0] += stored
     new = anchor[0] >= FREE
     before = 0.0 if new else max(0.0, dt * rate - near)
-    if new or stiffer(before) != stiffer(-near):  # the mean force acts on the way, but stores less where it has a kink
-        held, left = penalty(k, before)
+    if new or _times(before) != _times(-near):  # the mean force acts on the way, but stores less where it has a kink
+        held, left = _spring(k, before)
         out[3] -= 0.5 * (spring + held) * dt * rate + stored - left
     if new:
         anchor[0], anchor[1], anchor[2] = px, py, pz

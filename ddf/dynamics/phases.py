@@ -5,6 +5,7 @@ from __future__ import annotations
 from numba import njit
 
 from ddf.contact.bed import BED, bear, find_borne, lose
+from ddf.contact.bed import SHARE as BED_SHARE
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
 from ddf.contact.self_contact import drop_near
 from ddf.contact.summit import add_pushes, summit_forces
@@ -409,7 +410,7 @@ def _find_borne(model, state, work, row, b, reach):
     stored, lost = find_borne(
         vectors(state.x, sheet), vectors(state.v, sheet), scalars(model.area, sheet),
         scalars(model.inverse_mass, sheet), model.tool, model.tool_origin, model.tool_spacing,
-        (sheet.bed, model.tool_stiffness), (row[TOOL_Z], row[TOOL_SPEED]), reach, model.dt,
+        (sheet.bed, BED_SHARE * model.tool_stiffness), (row[TOOL_Z], row[TOOL_SPEED]), reach, model.dt,
         scalars(work.bed_sleep, sheet), scalars(work.borne, sheet), _bed(work, sheet), block.low, block.high,
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = stored
