@@ -80,6 +80,8 @@ SHEET = np.dtype(
         ("bend2", np.float64),
         ("bend_in_plane", np.float64),
         ("thickness", np.float64),
+        ("bed_stiffness", np.float64),  # [N/mm3]
+        ("bed_friction", np.float64),  # on the tool, through the sheets between
         ("bed", np.float64),  # ply: distance from the tool at which it bears the ply itself, see `contact.bed` [mm]
         ("rigidity", np.float64),  # diaphragm: plate bending rigidity [N mm]
         ("hourglass", np.float64),  # modulus 4 mu t of the diaphragms: hourglass strains, fold struts [N/mm]

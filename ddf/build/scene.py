@@ -18,6 +18,7 @@ from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nomina
 from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
 from ddf.build.summits import first_spots, summit_records
 from ddf.case import Case, hyperelastic_material
+from ddf.contact.bed import MASSES
 from ddf.dynamics import timestep
 from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.ply import PlyMesh
@@ -50,6 +51,7 @@ def _whole_scene(case: Case, even: bool) -> Scene:
     damp_fibres(case, sheets, masses, tangents)
     limit = step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s
+    sheets["bed_stiffness"] = [min(case.solver.tool_contact_stiffness_N_mm3, MASSES * m / dt**2) for m in masses]
     pools = node_pools(stack, sheets, masses)
     pairs, exposed, places = contact_pairs(case, stack, masses, sheets)
     blocks = row_blocks(sheets)

@@ -12,13 +12,18 @@ from ddf.materials import ogden, shear_law
 from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, SHEET, SHELL_PLY
 
 LOWEST = 0.75
-"""A ply that lies on the diaphragm itself is borne when the two are pressed to this share of their distance."""
+"""Of the distance at which a ply and the diaphragm touch, what is left at most where the ply is borne."""
 
 
 def _bed(thickness: list[float]) -> float:
-    """Distance [mm] from the tool at which it bears the last of some sheets, diaphragm first (`contact.bed`)."""
+    """Distance [mm] from the tool at which it bears the last of some sheets, diaphragm first (`contact.bed`).
+
+    0, never, for plies so high in the stack that they might lie on the diaphragm itself at this distance, beside
+    smaller ones.
+    """
     layers = sum(0.5 * (a + b) for a, b in zip(thickness[:-1], thickness[1:], strict=True))
-    return 0.5 * thickness[0] + min(0.5 * layers, LOWEST * 0.5 * (thickness[0] + thickness[-1]))
+    share = 0.5 * layers / (0.5 * (thickness[0] + thickness[-1]))
+    return 0.5 * thickness[0] + 0.5 * layers if share <= LOWEST + 1e-9 else 0.0
 
 
 def sheet_records(case: Case, stack: Stack, terms):
@@ -43,6 +48,7 @@ def sheet_records(case: Case, stack: Stack, terms):
             s["bend_in_plane"] = material.in_plane_bending_Nmm
             s["fold_radius"] = 0.5 * (d.thickness_mm + material.thickness_mm)
             s["bed"] = 0.0 if case.tool is None else _bed(stack.thickness[: k + 1])
+            s["bed_friction"] = min(case.friction.diaphragm_tool, case.friction.ply_diaphragm)
             table = material.shear_table
             angle, force = shear_law.shear_samples(
                 material.shear_law, material.thickness_mm, material.shear_modulus_floor_MPa,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from numba import njit
 
 from ddf.contact.bed import BED, bear, find_borne, lose
-from ddf.contact.bed import SHARE as BED_SHARE
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
 from ddf.contact.self_contact import drop_near
 from ddf.contact.summit import add_pushes, summit_forces
@@ -410,7 +409,7 @@ def _find_borne(model, state, work, row, b, reach):
     stored, lost = find_borne(
         vectors(state.x, sheet), vectors(state.v, sheet), scalars(model.area, sheet),
         scalars(model.inverse_mass, sheet), model.tool, model.tool_origin, model.tool_spacing,
-        (sheet.bed, BED_SHARE * model.tool_stiffness), (row[TOOL_Z], row[TOOL_SPEED]), reach, model.dt,
+        (sheet.bed, sheet.bed_stiffness), (row[TOOL_Z], row[TOOL_SPEED]), reach, model.dt,
         scalars(work.bed_sleep, sheet), scalars(work.borne, sheet), _bed(work, sheet), block.low, block.high,
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = stored
@@ -422,14 +421,15 @@ def _bear(model, state, work, row, b):
     """Let the tool bear a ply's block."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    power, done, lost = bear(
+    power, done, lost, rubbed = bear(
         vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.inverse_mass, sheet),
-        scalars(work.borne, sheet), _bed(work, sheet), (row[TOOL_Z], row[TOOL_SPEED]), row[DAMPING], model.dt,
-        block.low, block.high,
+        scalars(work.borne, sheet), _bed(work, sheet), sheet.bed_friction, (row[TOOL_Z], row[TOOL_SPEED]),
+        row[DAMPING], model.dt, block.low, block.high,
     )  # fmt: skip
-    state.ledger[b, FIBRE_WORK] -= 0.5 * row[DAMPING] * model.dt * power
+    state.ledger[b, FIBRE_WORK] -= 0.5 * model.dt * power
     state.ledger[b, TOOL_WORK] += done
     state.ledger[b, TOOL_DAMPING] += lost
+    state.ledger[b, TOOL_FRICTION] += rubbed
 
 
 @njit(**INLINE)
@@ -454,9 +454,9 @@ def drift(model, state, work, row, b):
         mirror.stay_on_plane(model, state, b)
     if sheet.bed > 0.0:
         motion = (row[TOOL_Z], row[TOOL_SPEED])
-        state.ledger[b, TOOL_DAMPING] += lose(
-            v, scalars(work.borne, sheet), _bed(work, sheet), motion, model.dt, block.low, block.high
-        )
+        lost, rubbed = lose(v, scalars(work.borne, sheet), _bed(work, sheet), motion, model.dt, block.low, block.high)
+        state.ledger[b, TOOL_DAMPING] += lost
+        state.ledger[b, TOOL_FRICTION] += rubbed
     square = power = 0.0
     for i in range(block.low, block.high):
         for c in range(3):
