@@ -19,9 +19,10 @@ the kept tensions too.
 
 The mean contact force on a node (`press`) is kept as that of the whole: on the plane it is twice what arrives.
 
-Of its image the half knows the strip only. Farther away both meet where a fold closes on the plane, and there a wall
-keeps them apart: nodes beyond `contact.self_contact`'s least way from the plane, along the sheet, stay half a contact
-distance away from it, without friction, for both sides move alike.
+Of its image the half knows the strip only. Both meet where a fold closes on the plane, and there a wall keeps them
+apart: nodes beyond `contact.self_contact`'s least way from the plane, along the sheet, stay half a contact distance
+away from it, nearer ones NEAR of that (in a fold of the least radius they are farther away; without it the lower
+diaphragm under two plies passed through its image). There is no friction on it, for both sides move alike.
 """
 
 from __future__ import annotations
@@ -30,6 +31,9 @@ from numba import njit
 
 from ddf.jit import FAST
 from ddf.model import scalars, vectors
+
+NEAR = 0.3
+"""Of the distance at which a sheet touches itself, for nodes near the plane along the sheet."""
 
 
 @njit(**FAST)
@@ -179,13 +183,13 @@ def meet_image(model, state, pair, b):
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
     x, f, area = vectors(state.x, sheet), vectors(state.f, sheet), scalars(model.area, sheet)
-    away = scalars(model.away, sheet)
+    away, inverse = scalars(model.away, sheet), scalars(model.inverse_mass, sheet)
     c = model.mirror
     stored = 0.0
     for i in range(block.low, block.high):
         for j in range(sheet.cols):
-            depth = pair.offset - 2.0 * x[c, i, j]
-            if depth > 0.0 and away[i, j]:
+            depth = (1.0 if away[i, j] else NEAR) * pair.offset - 2.0 * x[c, i, j]
+            if depth > 0.0 and inverse[i, j] > 0.0 and x[c, i, j] != 0.0:
                 k = pair.stiffness * area[i, j]
                 stored += 0.5 * k * depth * depth
                 f[c, i, j] += 2.0 * k * depth
