@@ -130,7 +130,7 @@ def _half(scene: Scene, axis: int) -> Scene:
     half = Half(
         axis=axis, whole=whole, start=scene.state,
         source=tuple(g.source for g in grids), flipped=tuple(g.flipped for g in grids),
-        corner=tuple((g.rows.start, g.cols.start) for g in grids), 
+        corner=tuple((g.rows.start, g.cols.start) for g in grids),
         turn=tuple(g.turn for g in grids),
     )  # fmt: skip
     return replace(scene, model=model, state=state_at_rest(model, x, places), half=half)
@@ -153,7 +153,8 @@ class _Grid:
             sheet["kind"] == PLY
             and min(abs(flat[axis, 1, 0] - flat[axis, 0, 0]), abs(flat[axis, 0, 1] - flat[axis, 0, 0])) > SAME_MM
         )  # families are each other's images
-        kept = exists & ((across >= -STRIP * max(cells)) | self.swapped)
+        self.cell = max(cells)  # at the plane
+        kept = exists & ((across >= -STRIP * self.cell) | self.swapped)
         self.rows, self.cols = (_extent(kept.any(axis=1 - a)) for a in (0, 1))
         self.shape = (self.rows.stop - self.rows.start, self.cols.stop - self.cols.start)
         self.size = self.shape[0] * self.shape[1]
@@ -229,8 +230,7 @@ class _Grid:
         own = (whole.pairs["slave"] == self.k) & (whole.pairs["master"] == self.k)
         if not own.any():
             return np.zeros(self.shape, bool)
-        size = float(np.abs(np.diff(np.unique(self.across.round(6)))).max())
-        least = max(np.pi * float(whole.sheets[self.k]["fold_radius"]), CELLS * size)
+        least = max(np.pi * float(whole.sheets[self.k]["fold_radius"]), CELLS * self.cell)
         return self.kept & (2.0 * self.across > least)
 
     def _sides(self, name: str) -> FloatArray:

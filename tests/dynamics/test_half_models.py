@@ -153,6 +153,15 @@ def test_sheet_meets_its_image_by_the_gradient_of_an_energy():
     assert (stored() - energy) / 1e-6 == pytest.approx(-force[0], rel=1e-4)
 
 
+def test_wall_begins_where_folds_may_close_and_not_at_the_frames_cells():
+    scene = scene_of("auto")
+    model = scene.model
+    away, x = (sheet_scalars(model, model.away, 0), sheet_vectors(model, scene.state.x, 0)[0])
+    least = 0.5 * max(np.pi * float(model.sheets[0]["fold_radius"]), 2.0 * 5.0)
+    assert (away == (x > least)).all()
+    assert away.any()
+
+
 @pytest.mark.parametrize(
     ("changes", "why"),
     [
