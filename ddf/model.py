@@ -21,6 +21,7 @@ col            grid index j          runs along fibre family 2 (ply) or y (diaph
 cell (i, j)    stored at node (i, j) the quadrilateral of nodes (i, j) .. (i+1, j+1); last row and column are 0
 bar1, bar2     pool (N,)             width that the bar (i,j)-(i+1,j), (i,j)-(i,j+1) stands for [mm]
 tension1, 2    pool (N,)             tension of these bars [N]
+rise           pool (N,)             how far the bed under a ply's node has risen [mm]
 press          pool (N,)             running mean of the normal forces of all contacts on a node [N]
 director       pool (3 S,)           unit normals of the plies of shell-membrane cells; S nodes, `shell` the first of
                                      a sheet; likewise spin, their angular velocities [1/s], and pull, the
@@ -187,6 +188,7 @@ class State(NamedTuple):
     press: np.ndarray  # (N,) mean contact force on each node [N]
     tension1: np.ndarray  # (N,) tension of each bar, as the last step left it [N]
     tension2: np.ndarray
+    rise: np.ndarray  # (N,) how far the bed under each node of a ply has risen, see `contact.bed` [mm]
     director: np.ndarray
     spin: np.ndarray
     pull: np.ndarray

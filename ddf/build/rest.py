@@ -29,6 +29,7 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray, spots: FloatA
         x=x, v=np.zeros_like(x), f=np.zeros_like(x),
         place=places, slip=np.zeros(2 * model.exposed.size), tool_anchor=anchors, spots=spots,
         press=np.zeros(model.mass.size), tension1=np.zeros(model.mass.size), tension2=np.zeros(model.mass.size),
+        rise=np.zeros(model.mass.size),
         director=np.zeros(3 * size), spin=np.zeros(3 * size), pull=np.zeros(3 * size), history=np.zeros(HISTORY * size),
         ledger=np.zeros((model.blocks.size, LEDGER)), springs=np.zeros((model.blocks.size, SPRINGS)),
         clock=np.zeros(4),

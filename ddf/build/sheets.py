@@ -14,6 +14,10 @@ from ddf.model import DIAPHRAGM, PLY, PRESSURE_BOTTOM, PRESSURE_TOP, SHEET, SHEL
 LOWEST = 0.75
 """Of the distance at which a ply and the diaphragm touch, what is left at most where the ply is borne."""
 
+SQUEEZED = 0.5
+"""Of the distance at which layers touch, what is left where the tool bears the last of them. Deeper ones cross as
+meshes see them; rubber under 10 MPa may well give more."""
+
 
 def _bed(thickness: list[float]) -> float:
     """Distance [mm] from the tool at which it bears the last of some sheets, diaphragm first (`contact.bed`).
@@ -22,8 +26,8 @@ def _bed(thickness: list[float]) -> float:
     smaller ones.
     """
     layers = sum(0.5 * (a + b) for a, b in zip(thickness[:-1], thickness[1:], strict=True))
-    share = 0.5 * layers / (0.5 * (thickness[0] + thickness[-1]))
-    return 0.5 * thickness[0] + 0.5 * layers if share <= LOWEST + 1e-9 else 0.0
+    share = SQUEEZED * layers / (0.5 * (thickness[0] + thickness[-1]))
+    return 0.5 * thickness[0] + SQUEEZED * layers if share <= LOWEST + 1e-9 else 0.0
 
 
 def sheet_records(case: Case, stack: Stack, terms):

@@ -406,13 +406,15 @@ def _find_borne(model, state, work, row, b, reach):
     """Find what bears a ply's block on the tool."""
     block = model.blocks[b]
     sheet = model.sheets[block.sheet]
-    stored, lost = find_borne(
+    stored, lost, done = find_borne(
         vectors(state.x, sheet), vectors(state.v, sheet), scalars(model.area, sheet),
         scalars(model.inverse_mass, sheet), model.tool, model.tool_origin, model.tool_spacing,
         (sheet.bed, sheet.bed_stiffness), (row[TOOL_Z], row[TOOL_SPEED]), reach, model.dt,
-        scalars(work.bed_sleep, sheet), scalars(work.borne, sheet), _bed(work, sheet), block.low, block.high,
+        scalars(work.bed_sleep, sheet), scalars(work.borne, sheet), scalars(state.rise, sheet), _bed(work, sheet),
+        block.low, block.high,
     )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = stored
+    state.ledger[b, TOOL_WORK] += done
     state.ledger[b, TOOL_DAMPING] += lost
 
 
