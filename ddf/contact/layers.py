@@ -6,7 +6,8 @@ step would overshoot or have no answer, places then creep instead of jumping abo
 surface's nodes there (`patch.py`), tangents S_1, S_2, normal n, r = x_s - N_k x_k:
 
     gap    g = sign r.n - offset;             damping C A g', penalty energy where g < 0:
-           U = A c (1/2 K g^2 + (H - 1)/2 K <-g - HARD offset>^2),  <.> positive part, c: cover
+           U = A c (1/2 K g^2 + (H - 1)/2 K <-g - HARD offset>^2),  <.> positive part,
+           c = s^2 (3 - 2 s), s: cover between 0 and 1
     r^a    contravariant components of r (metric of S_1, S_2): what the projection still lacks
     slip   s = s^a S_a;                       friction spring of stiffness 0.3 K A, Coulomb limit mu N
            kept along S_1 and across it [mm]: it turns with the master, which does not stretch it
@@ -24,7 +25,7 @@ anchor: in folds as tight as the contact distance places move where nothing slip
 master that stretched took what slip was held along, and gave the springs energy that no force had worked for.
 
 A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge U
-fades to nothing (cover c, interpolated like the surface; -dU/dc c_a pushes the node off the edge): the corner of one
+fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the node off the edge): the corner of one
 ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
 30 m/s (seen). One that is far away rests for as many
 steps as it needs at the given reach to come near.
@@ -68,7 +69,7 @@ STRIDE = np.uint64(4 * CHUNK)
     X, Y, Z,  # slave node [mm]
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
     AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip along S_1 and across
-    COVER,  # share of the stiffness that the master's edge leaves
+    COVER,  # s
     BEFORE,  # depth of the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
@@ -248,9 +249,10 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         w[NZ + t] = nz
         w[D + t] = d
         cover = min(1.0, max(0.0, surface[k + THREE]))
+        fade = cover * cover * (3.0 - 2.0 * cover)
         w[COVER + t] = cover
-        w[AREA + t] *= cover
-        w[WHOLE + t] *= cover
+        w[AREA + t] *= fade
+        w[WHOLE + t] *= fade
         w[GAP + t] = sign * d - offset
         w[GUU + t] = guu
         w[GUV + t] = guv
@@ -349,7 +351,9 @@ def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
         w[RATE + t] = rate
         w[DRAG + t] = fn - spring if w[AREA + t] > 0.0 else 0.0
         # off the master's edge, where its cover is less than whole
-        slope = -stored / w[COVER + t] if w[COVER + t] < WHOLE_COVER and w[AREA + t] > 0.0 else 0.0
+        cover = max(w[COVER + t], 1e-30)
+        edge = cover < WHOLE_COVER and w[AREA + t] > 0.0
+        slope = -stored * 6.0 * (1.0 - cover) / (cover * (3.0 - 2.0 * cover)) if edge else 0.0
         eu, ev = slope * surface[FOUR * t + STRIDE + THREE], slope * surface[FOUR * t + STRIDE + STRIDE + THREE]
         cu, cv = (gvv * eu - guv * ev) * inv, (guu * ev - guv * eu) * inv
         tx, ty, tz = tx + cu * ux + cv * vx, ty + cu * uy + cv * vy, tz + cu * uz + cv * vz

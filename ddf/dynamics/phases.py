@@ -20,7 +20,7 @@ from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.shell_membrane.history import HISTORY
 from ddf.elements.shell_membrane.rotations import turn_row
 from ddf.elements.squeeze import SHARE, squeeze_forces
-from ddf.elements.tension import LINES, pull_kept, pull_lines, pull_rows
+from ddf.elements.tension import pull_kept, pull_lines, pull_rows
 from ddf.jit import FAST, INLINE
 from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
@@ -474,20 +474,19 @@ def pull_family(model, state, work, member, family, sweep, t):
     """Correct the fibre tension along bundle of lines t of a family; sweep 0 or 1."""
     bundles = work.bundles1 if family == 1 else work.bundles2
     sheet, low, high = model.sheets[bundles[t, 0]], bundles[t, 1], bundles[t, 2]
+    first, end = bundles[t, 3], bundles[t, 4]
     x, v = vectors(state.x, sheet), vectors(state.v, sheet)
     inverse = scalars(model.line_mass, sheet)
     dt = model.dt
-    rows = 6 * ((sheet.rows if family == 1 else sheet.cols) + 1) + 2
-    lines = work.lines[member, : rows * LINES].reshape((rows, LINES))
+    lines = work.lines[member]
     if family == 1:
         law = (1.0 / sheet.a1, dt * dt * sheet.eh1 / sheet.a1, 0.5 * dt * sheet.eh1, dt * dt / sheet.a1, dt)
         bar, kept = scalars(model.bar1, sheet), scalars(state.tension1, sheet)
-        pull_lines(x, v, inverse, bar, kept, law, sweep == 1, model.mirror, low, high, lines)
+        pull_lines(x, v, inverse, bar, kept, law, sweep == 1, model.mirror, low, high, first, end, lines)
     else:
         law = (1.0 / sheet.a2, dt * dt * sheet.eh2 / sheet.a2, 0.5 * dt * sheet.eh2, dt * dt / sheet.a2, dt)
         bar, kept = scalars(model.bar2, sheet), scalars(state.tension2, sheet)
-        turned = work.turned[member, : 9 * sheet.cols * LINES].reshape((9, sheet.cols, LINES))
-        pull_rows(x, v, inverse, bar, kept, law, sweep == 1, model.mirror, low, high, turned, lines)
+        pull_rows(x, v, inverse, bar, kept, law, sweep == 1, model.mirror, low, high, first, end, lines)
 
 
 @njit(**FAST)

@@ -12,8 +12,8 @@ from ddf.contact.summit import PUSH
 from ddf.contact.tool import PRESS
 from ddf.elements import bending, shear, squeeze
 from ddf.elements.shell_membrane import membrane, shell
-from ddf.elements.tension import LINES
-from ddf.model import PLY, Model
+from ddf.elements.tension import LINES, line_scratch
+from ddf.model import PLY, Model, sheet_scalars
 
 SCRATCH_ROWS = 72
 
@@ -40,10 +40,9 @@ class Work(NamedTuple):
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     idle: np.ndarray  # (pairs,) bool: pairs of self-contact in which no node is followed in this batch of steps
-    bundles1: np.ndarray  # (k, 3): sheet, first and last+1 column: lines of family 1 solved side by side
-    bundles2: np.ndarray  # (k, 3): sheet, first and last+1 row: lines of family 2
-    lines: np.ndarray  # (members, (6 (longest + 1) + 2) * LINES)
-    turned: np.ndarray  # (members, 9 * longest * LINES)
+    bundles1: np.ndarray  # (k, 5): sheet, columns, rows (first and last+1): lines of family 1 solved side by side
+    bundles2: np.ndarray  # (k, 5): sheet, rows, columns: lines of family 2
+    lines: np.ndarray  # (members, `line_scratch`)
     bed: np.ndarray  # (N, BED) what bears plies' nodes, see `contact.bed`
     borne: np.ndarray  # (N,) bool: whether it does
     bed_sleep: np.ndarray  # (N,) int16: steps in which a ply's node need not look at the tool
@@ -60,11 +59,7 @@ def make_work(model: Model, members: int) -> Work:
         blocks = int(np.sum(model.blocks["sheet"] == pair["slave"]))
         buffers = max(buffers, int(pair["buffer"]) + 4 * n * m * blocks)
         spans = max(spans, int(pair["span"]) + n * blocks)
-    bundles: tuple[list[tuple[int, int, int]], ...] = ([], [])
-    for k in np.flatnonzero(model.sheets["kind"] == PLY):
-        for family, key in enumerate(("cols", "rows")):
-            count = int(model.sheets[k][key])
-            bundles[family].extend((int(k), a, min(a + LINES, count)) for a in range(0, count, LINES))
+    bundles = [_bundles(model, family) for family in (1, 2)]
     tiled = (bending, shear, squeeze, membrane, shell)
     longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom, mirrored = model.sheets[0], len(model.ghosts) + len(model.plane)
@@ -80,9 +75,22 @@ def make_work(model: Model, members: int) -> Work:
         pushes=np.full((model.summits.shape[0], PUSH), -1.0),
         sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
         rest=np.zeros(model.exposed.size, np.int8), idle=np.zeros(model.pairs.size, bool),
-        bundles1=np.array(bundles[0], np.int64).reshape(-1, 3), bundles2=np.array(bundles[1], np.int64).reshape(-1, 3),
-        lines=np.zeros((members, (6 * (longest + 1) + 2) * LINES)), turned=np.zeros((members, 9 * longest * LINES)),
+        bundles1=bundles[0], bundles2=bundles[1], lines=np.zeros((members, line_scratch(longest))),
         bed=np.zeros((model.mass.size, BED)), borne=np.zeros(model.mass.size, bool),
         bed_sleep=np.zeros(model.mass.size, np.int16),
         aside=np.zeros((mirrored, 3)), pressed_before=np.zeros(mirrored),
     )  # fmt: skip
+
+
+def _bundles(model: Model, family: int) -> np.ndarray:
+    """Fibre lines to be solved side by side, and the nodes along them between which there are bars: (k, 5)."""
+    found = []
+    for k in np.flatnonzero(model.sheets["kind"] == PLY):
+        bars = sheet_scalars(model, model.bar1 if family == 1 else model.bar2, int(k)) > 0.0
+        bars = bars if family == 1 else bars.T
+        for a in range(0, bars.shape[1], LINES):
+            b = min(a + LINES, bars.shape[1])
+            there = np.flatnonzero(bars[:, a:b].any(axis=1))
+            if there.size:
+                found.append((int(k), a, b, there[0], there[-1] + 2))
+    return np.array(found, np.int64).reshape(-1, 5)

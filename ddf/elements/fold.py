@@ -37,11 +37,11 @@ def least_chord(s, radius):
 @njit(**FAST)
 def _any_short(xa, ya, za, xb, yb, zb, chord):
     """Whether any two nodes of two rows, pair by pair, are nearer than their least chord."""
-    least = 0.0
+    short = 0.0  # a sum, for compilers vectorise no least of all
     for j in range(xa.shape[0]):
         dx, dy, dz = xb[j] - xa[j], yb[j] - ya[j], zb[j] - za[j]
-        least = min(least, dx * dx + dy * dy + dz * dz - chord[j] * chord[j])
-    return least < 0.0
+        short += max(0.0, chord[j] * chord[j] - (dx * dx + dy * dy + dz * dz))
+    return short > 0.0
 
 
 @njit(**FAST)

@@ -46,10 +46,10 @@ SCRATCH = 3 * TILE + SHARES
 @njit(**FAST)
 def _pressed(press, i, start, count):
     """Whether anything presses on the nodes of a tile."""
-    top = 0.0
+    total = 0.0
     for t in range(count + ONE):
-        top = max(top, press[i, start + t], press[i + ONE, start + t])
-    return top > 0.0
+        total += press[i, start + t] + press[i + ONE, start + t]
+    return total > 0.0
 
 
 @njit(**FAST)

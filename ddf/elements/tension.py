@@ -55,20 +55,40 @@ from ddf.jit import FAST
 LINES = 16
 """Fibre lines that are solved side by side."""
 
+# What the lines' nodes, and the bars from each to the next, carry: LINES numbers of each kind, kind by kind, node by
+# node; before the first node and after the last a place with nothing in it. One array with constant distances: loops
+# over lines are vectorised, which those over rows of a dozen arrays were not.
+(
+    X, Y, Z, U, V, W,  # place [mm] and velocity [mm/s]; y is normal to the mirror plane, if there is one
+    MASS, BAR, KEPT,  # inverse mass [1/tonne], width [mm], tension [N]
+    EX, EY, EZ,  # direction
+    PIVOT,  # of the elimination; afterwards, in the string's step, what the next node's velocity adds
+    PULL, COUPLED,  # reduced right side, then impulse [N s]; share of the next bar's impulse in it
+    STIFF,  # stiffness of the string [tonne]
+) = (np.uint64(k * LINES) for k in range(16))  # fmt: skip
+FIELDS = 17  # one more than there are: places 2048 bytes apart would fight for few lines of the cache
+NEXT = np.uint64(FIELDS * LINES)
+LANES = np.uint64(LINES)
+
+
+def line_scratch(nodes: int) -> int:
+    """Numbers of scratch for lines of that many nodes."""
+    return (nodes + 2) * FIELDS * LINES
+
 
 @njit(**FAST)
-def _forward(
-    xa, ya, za, xb, yb, zb, ua, va, wa, ub, vb, wb, ma, mb, width, kept, law, ex, ey, ez, px, py, pz, s, ps, t, pt, c
-):
-    """One bar of every line: direction e, pivot s, reduced right side t; c belongs to the bar before (p...).
+def _forward(w, o, law):
+    """One bar of every line, that of the node at o: direction, pivot, reduced right side.
 
-    law = (1/a, dt^2 E h / a, dt E h / 2, dt); y is normal to the mirror plane, if there is one.
+    law = (1/a, dt^2 E h / a, dt E h / 2, dt).
     """
     inverse_a, stiff, pull, dt = law
-    for j in range(width.shape[0]):
-        dx = xb[j] - xa[j]
-        dy = yb[j] - ya[j]
-        dz = zb[j] - za[j]
+    for j in range(LANES):
+        k = o + j
+        after, before = k + NEXT, k - NEXT
+        dx = w[after + X] - w[k + X]
+        dy = w[after + Y] - w[k + Y]
+        dz = w[after + Z] - w[k + Z]
         square = dx * dx + dy * dy + dz * dz
         r = 1.0 / np.sqrt(square)
         dx *= r
@@ -76,166 +96,205 @@ def _forward(
         dz *= r
         q = square * inverse_a * inverse_a - 1.0
         log = q * (1.0 + q * (-1.5 + q * (11 / 6 + q * (-25 / 12 + q * (137 / 60 - 49 / 20 * q)))))
-        tension = pull * width[j] * log * square * r * inverse_a
-        kappa = stiff * width[j]
-        cosine = dx * px[j] + dy * py[j] + dz * pz[j]
-        coupled = abs(ma[j]) * cosine
-        before = ps[j] * coupled
-        c[j] = before
+        tension = pull * w[k + BAR] * log * square * r * inverse_a
+        kappa = stiff * w[k + BAR]
+        mass, mass_after = w[k + MASS], w[after + MASS]
+        coupled = abs(mass) * (dx * w[before + EX] + dy * w[before + EY] + dz * w[before + EZ])
+        share = w[before + PIVOT] * coupled
+        w[before + COUPLED] = share
         low = kappa * coupled
-        strain = dx * (ub[j] - ua[j]) + dy * (vb[j] - va[j]) + dz * (wb[j] - wa[j])
-        right = kappa * strain + tension - dt * kept[j]
+        strain = dx * (w[after + U] - w[k + U]) + dy * (w[after + V] - w[k + V]) + dz * (w[after + W] - w[k + W])
+        right = kappa * strain + tension - dt * w[k + KEPT]
         along = 1.0 - dy * dy
-        free = (ma[j] if ma[j] >= 0.0 else -ma[j] * along) + (mb[j] if mb[j] >= 0.0 else -mb[j] * along)
-        inverse = 1.0 / (1.0 + kappa * free - low * before)
-        t[j] = (right + low * pt[j]) * inverse
-        s[j] = kappa * inverse
-        ex[j] = dx
-        ey[j] = dy
-        ez[j] = dz
+        free = (mass if mass >= 0.0 else -mass * along) + (mass_after if mass_after >= 0.0 else -mass_after * along)
+        inverse = 1.0 / (1.0 + kappa * free - low * share)
+        w[k + PULL] = (right + low * w[before + PULL]) * inverse
+        w[k + PIVOT] = kappa * inverse
+        w[k + EX] = dx
+        w[k + EY] = dy
+        w[k + EZ] = dz
 
 
 @njit(**FAST)
-def _correct(ua, va, wa, ub, vb, wb, ma, mb, ex, ey, ez, t, c, last, kept, per_dt):
-    """Correction of each bar's impulse from that of the bar after it (last), applied to both nodes' velocities."""
-    for j in range(t.shape[0]):
-        p = t[j] + c[j] * last[j]
-        last[j] = p
-        kept[j] += per_dt * p
-        pa, pb = abs(ma[j]) * p, abs(mb[j]) * p
-        ua[j] += pa * ex[j]
-        va[j] += max(ma[j], 0.0) * p * ey[j]
-        wa[j] += pa * ez[j]
-        ub[j] -= pb * ex[j]
-        vb[j] -= max(mb[j], 0.0) * p * ey[j]
-        wb[j] -= pb * ez[j]
+def _correct(w, o, per_dt):
+    """Correction of each bar's impulse from that of the bar after it, applied to both nodes' velocities."""
+    for j in range(LANES):
+        k = o + j
+        after = k + NEXT
+        p = w[k + PULL] + w[k + COUPLED] * w[after + PULL]
+        w[k + PULL] = p
+        w[k + KEPT] += per_dt * p
+        a, b = abs(w[k + MASS]) * p, abs(w[after + MASS]) * p
+        w[k + U] += a * w[k + EX]
+        w[k + V] += max(w[k + MASS], 0.0) * p * w[k + EY]
+        w[k + W] += a * w[k + EZ]
+        w[after + U] -= b * w[k + EX]
+        w[after + V] -= max(w[after + MASS], 0.0) * p * w[k + EY]
+        w[after + W] -= b * w[k + EZ]
 
 
 @njit(**FAST)
-def _correct_string(
-    ua, va, wa, ub, vb, wb, uc, vc, wc, ma, mb, ex, ey, ez, t, c, last, kept, per_dt, g, g_after, s_after, scale
-):
-    """The same; then node b is final for the axial part, and the string's system is reduced by it: v_b += g v_a.
+def _correct_string(w, o, per_dt, scale):
+    """The same; then the bar's second node is final for the axial part, and the string's system is reduced by it.
 
-    g and string stiffness s_after of the bar after it, (uc, vc, wc) the reduced velocity of the node after it.
+    The node after that has its reduced velocity already: v_b += PIVOT v_a once v_a is known.
     """
-    for j in range(t.shape[0]):
-        p = t[j] + c[j] * last[j]
-        last[j] = p
-        tension = kept[j] + per_dt * p
-        kept[j] = tension
-        pa, pb = abs(ma[j]) * p, abs(mb[j]) * p
-        ua[j] += pa * ex[j]
-        va[j] += max(ma[j], 0.0) * p * ey[j]
-        wa[j] += pa * ez[j]
+    for j in range(LANES):
+        k = o + j
+        after = k + NEXT
+        last = after + NEXT
+        p = w[k + PULL] + w[k + COUPLED] * w[after + PULL]
+        w[k + PULL] = p
+        tension = w[k + KEPT] + per_dt * p
+        w[k + KEPT] = tension
+        a, mass = abs(w[k + MASS]) * p, w[after + MASS]
+        b = abs(mass) * p
+        w[k + U] += a * w[k + EX]
+        w[k + V] += max(w[k + MASS], 0.0) * p * w[k + EY]
+        w[k + W] += a * w[k + EZ]
         s = max(tension, 0.0) * scale
-        after = abs(mb[j]) * s_after[j]
-        inverse = 1.0 / (1.0 + abs(mb[j]) * s + after * (1.0 - g_after[j]))
-        ub[j] = (ub[j] - pb * ex[j] + after * uc[j]) * inverse
-        vb[j] = (vb[j] - pb * ey[j] + after * vc[j]) * inverse if mb[j] >= 0.0 else 0.0
-        wb[j] = (wb[j] - pb * ez[j] + after * wc[j]) * inverse
-        g[j] = abs(mb[j]) * s * inverse
-        s_after[j] = s
+        pull = abs(mass) * w[after + STIFF]
+        inverse = 1.0 / (1.0 + abs(mass) * s + pull * (1.0 - w[after + PIVOT]))
+        w[after + U] = (w[after + U] - b * w[k + EX] + pull * w[last + U]) * inverse
+        v = (w[after + V] - b * w[k + EY] + pull * w[last + V]) * inverse
+        w[after + V] = v if mass >= 0.0 else 0.0
+        w[after + W] = (w[after + W] - b * w[k + EZ] + pull * w[last + W]) * inverse
+        w[k + PIVOT] = abs(mass) * s * inverse
+        w[k + STIFF] = s
 
 
 @njit(**FAST)
-def _first_node(u, v, w, u1, v1, w1, mass, s, g):
+def _first_node(w, o):
     """Reduce the string's system by a line's first node: it is final then."""
-    for j in range(u.shape[0]):
-        k = abs(mass[j]) * s[j]
-        inverse = 1.0 / (1.0 + k * (1.0 - g[j]))
-        u[j] = (u[j] + k * u1[j]) * inverse
-        v[j] = (v[j] + k * v1[j]) * inverse if mass[j] >= 0.0 else 0.0
-        w[j] = (w[j] + k * w1[j]) * inverse
+    for j in range(LANES):
+        k = o + j
+        after = k + NEXT
+        s = abs(w[k + MASS]) * w[k + STIFF]
+        inverse = 1.0 / (1.0 + s * (1.0 - w[k + PIVOT]))
+        w[k + U] = (w[k + U] + s * w[after + U]) * inverse
+        v = (w[k + V] + s * w[after + V]) * inverse
+        w[k + V] = v if w[k + MASS] >= 0.0 else 0.0
+        w[k + W] = (w[k + W] + s * w[after + W]) * inverse
 
 
 @njit(**FAST)
-def _substitute(ua, va, wa, ub, vb, wb, mb, g):
+def _substitute(w, o):
     """Velocity of the next node of each line, given that of the one before."""
-    for j in range(g.shape[0]):
-        ub[j] += g[j] * ua[j]
-        vb[j] += g[j] * va[j] if mb[j] >= 0.0 else 0.0
-        wb[j] += g[j] * wa[j]
+    for j in range(LANES):
+        k = o + j
+        after, g = k + NEXT, w[k + PIVOT]
+        w[after + U] += g * w[k + U]
+        w[after + V] += g * w[k + V] if w[after + MASS] >= 0.0 else 0.0
+        w[after + W] += g * w[k + W]
 
 
 @njit(**FAST)
-def pull_lines(x, v, inverse_mass, bar, kept, law, string, mirror, a, b, work):
-    """Correct the tension along the first grid direction, lines a..b-1; v and kept are changed in place.
+def _solve(w, nodes, law, string):
+    """Correct the tension along lines of so many nodes that have been gathered in w."""
+    first, last = NEXT, NEXT * np.uint64(nodes)
+    w[:NEXT] = 0.0
+    w[last + EX : last + np.uint64(2) * NEXT] = 0.0
+    ahead = (law[0], law[1], law[2], law[4])
+    o = first
+    while o < last:
+        _forward(w, o, ahead)
+        o += NEXT
+    w[last - NEXT + COUPLED : last - NEXT + STIFF] = 0.0
+    per_dt = 1.0 / law[4]
+    o = last - NEXT
+    if not string:
+        while o >= first:
+            _correct(w, o, per_dt)
+            o -= NEXT
+        return
+    while o >= first:
+        _correct_string(w, o, per_dt, law[3])
+        o -= NEXT
+    _first_node(w, first)
+    o = first
+    while o < last:
+        _substitute(w, o)
+        o += NEXT
 
-    x, v (3, n, m) [mm], [mm/s]; inverse_mass [1/tonne], below 0 on the mirror plane, which is normal to component
-    `mirror` (if any); bar (n, m) widths [mm]; kept (n, m) tensions [N], which are
-    in v; law = (1/a, dt^2 E h / a, dt E h / 2, dt^2 / a, dt) in mm, s, N; string: whether to take the
-    string's step as well; work (6 (n + 1) + 2, LINES).
+
+@njit(**FAST)
+def pull_lines(x, v, inverse_mass, bar, kept, law, string, mirror, a, b, first, end, work):
+    """Correct the tension along the first grid direction, nodes first..end-1 of lines a..b-1, at most LINES of them.
+
+    x, v (3, n, m) [mm], [mm/s], of which v is changed in place, as is kept; inverse_mass [1/tonne], below 0 on the
+    mirror plane, which is normal to component `mirror` (if any); bar (n, m) widths [mm]; kept (n, m) tensions [N],
+    which are in v; law = (1/a, dt^2 E h / a, dt E h / 2, dt^2 / a, dt) in mm, s, N; string: whether to take the
+    string's step as well; work (line_scratch(end - first),).
     """
     # the kernels above take the component normal to the mirror plane as the second one
     r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
-    n, w = x.shape[1], b - a
-    per_dt = 1.0 / law[4]
-    ahead = (law[0], law[1], law[2], law[4])
-    work[:6] = 0.0
-    for i in range(n - 1):
-        o, p = 6 * (i + 1), 6 * i  # rows of a bar: ex, ey, ez, s, t, c
-        _forward(
-            x[r, i, a:b], x[q, i, a:b], x[s, i, a:b], x[r, i + 1, a:b], x[q, i + 1, a:b], x[s, i + 1, a:b],
-            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
-            inverse_mass[i, a:b], inverse_mass[i + 1, a:b], bar[i, a:b], kept[i, a:b], ahead,
-            work[o, :w], work[o + 1, :w], work[o + 2, :w], work[p, :w], work[p + 1, :w], work[p + 2, :w],
-            work[o + 3, :w], work[p + 3, :w], work[o + 4, :w], work[p + 4, :w], work[p + 5, :w],
-        )  # fmt: skip
-    work[6 * (n - 1) + 5] = 0.0
-    work[6 * n : 6 * n + 4] = 0.0
-    last, stiff = work[6 * n, :w], work[6 * n + 1, :w]
-    if not string:
-        for i in range(n - 2, -1, -1):
-            o = 6 * (i + 1)
-            _correct(
-                v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
-                inverse_mass[i, a:b], inverse_mass[i + 1, a:b], work[o, :w], work[o + 1, :w], work[o + 2, :w],
-                work[o + 4, :w], work[o + 5, :w], last, kept[i, a:b], per_dt,
-            )  # fmt: skip
-        return
-    for i in range(n - 2, -1, -1):
-        o, k = 6 * (i + 1), min(i + 2, n - 1)  # the last node has none after it, and no string stiffness there
-        _correct_string(
-            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
-            v[r, k, a:b], v[q, k, a:b], v[s, k, a:b], inverse_mass[i, a:b], inverse_mass[i + 1, a:b],
-            work[o, :w], work[o + 1, :w], work[o + 2, :w], work[o + 4, :w], work[o + 5, :w], last,
-            kept[i, a:b], per_dt, work[o + 3, :w], work[o + 9, :w], stiff, law[3],
-        )  # fmt: skip
-    _first_node(
-        v[r, 0, a:b], v[q, 0, a:b], v[s, 0, a:b], v[r, 1, a:b], v[q, 1, a:b], v[s, 1, a:b],
-        inverse_mass[0, a:b], stiff, work[9, :w],
-    )  # fmt: skip
-    for i in range(n - 1):
-        _substitute(
-            v[r, i, a:b], v[q, i, a:b], v[s, i, a:b], v[r, i + 1, a:b], v[q, i + 1, a:b], v[s, i + 1, a:b],
-            inverse_mass[i + 1, a:b], work[6 * i + 9, :w],
-        )  # fmt: skip
+    o = FIELDS * LINES
+    for values in (x[r], x[q], x[s], v[r], v[q], v[s], inverse_mass, bar, kept):
+        _gather(values, a, b, first, end, work, o)
+        o += LINES
+    _solve(work, end - first, law, string)
+    _scatter(work, (FIELDS + 3) * LINES, v[r], a, b, first, end)
+    _scatter(work, (FIELDS + 4) * LINES, v[q], a, b, first, end)
+    _scatter(work, (FIELDS + 5) * LINES, v[s], a, b, first, end)
+    _scatter(work, (FIELDS + 8) * LINES, kept, a, b, first, end)
 
 
 @njit(**FAST)
-def pull_rows(x, v, inverse_mass, bar, kept, law, string, mirror, low, high, tile, work):
-    """The same along the second grid direction for rows low..high-1, at most LINES of them.
+def pull_rows(x, v, inverse_mass, bar, kept, law, string, mirror, low, high, first, end, work):
+    """The same along the second grid direction for nodes first..end-1 of rows low..high-1."""
+    r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
+    for lane in range(LINES):
+        i, o = min(low + lane, high - 1), FIELDS * LINES + lane
+        for row in (x[r, i], x[q, i], x[s, i], v[r, i], v[q, i], v[s, i], inverse_mass[i], bar[i], kept[i]):
+            _turn(row, first, end, work, o)
+            o += LINES
+    _solve(work, end - first, law, string)
+    for lane in range(high - low):
+        i, o = low + lane, FIELDS * LINES + lane
+        _turn_back(work, o + 3 * LINES, v[r, i], first, end)
+        _turn_back(work, o + 4 * LINES, v[q, i], first, end)
+        _turn_back(work, o + 5 * LINES, v[s, i], first, end)
+        _turn_back(work, o + 8 * LINES, kept[i], first, end)
 
-    tile (9, m, LINES) holds the rows turned, so that the lines lie side by side; work as in `pull_lines`.
-    """
-    m, w = x.shape[2], high - low
-    for r in range(w):
-        for c in range(3):
-            for j in range(m):
-                tile[c, j, r] = x[c, low + r, j]
-                tile[3 + c, j, r] = v[c, low + r, j]
-        for j in range(m):
-            tile[6, j, r] = inverse_mass[low + r, j]
-            tile[7, j, r] = bar[low + r, j]
-            tile[8, j, r] = kept[low + r, j]
-    pull_lines(tile[0:3], tile[3:6], tile[6], tile[7], tile[8], law, string, mirror, 0, w, work)
-    for r in range(w):
-        for c in range(3):
-            for j in range(m):
-                v[c, low + r, j] = tile[3 + c, j, r]
-        for j in range(m):
-            kept[low + r, j] = tile[8, j, r]
+
+@njit(**FAST)
+def _gather(values, a, b, first, end, work, o):
+    """One kind of numbers of the nodes of lines a..b-1, side by side; lanes left over get those of the last line."""
+    for i in range(first, end):
+        row = values[i]
+        if b - a == LINES:
+            for j in range(LINES):
+                work[o + j] = row[a + j]
+        else:
+            for j in range(LINES):
+                work[o + j] = row[min(a + j, b - 1)]
+        o += FIELDS * LINES
+
+
+@njit(**FAST)
+def _scatter(work, o, values, a, b, first, end):
+    """One kind of numbers of lines a..b-1 back."""
+    for i in range(first, end):
+        row = values[i]
+        for j in range(b - a):
+            row[a + j] = work[o + j]
+        o += FIELDS * LINES
+
+
+@njit(**FAST)
+def _turn(row, first, end, work, o):
+    """Numbers first..end-1 of a line that lies in memory along itself."""
+    for j in range(first, end):
+        work[o] = row[j]
+        o += FIELDS * LINES
+
+
+@njit(**FAST)
+def _turn_back(work, o, row, first, end):
+    """Numbers first..end-1 of such a line back."""
+    for j in range(first, end):
+        row[j] = work[o]
+        o += FIELDS * LINES
 
 
 @njit(**FAST)

@@ -15,7 +15,7 @@ from ddf.elements.bending import bending_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
 from ddf.elements.shear import shear_forces
-from ddf.elements.tension import LINES, pull_lines, pull_rows
+from ddf.elements.tension import LINES, line_scratch, pull_lines, pull_rows
 from ddf.materials.shear_law import shear_samples, shear_table
 from ddf.model import PAIR, SHEET
 from ddf.simulate import BATCH, Simulation
@@ -44,7 +44,7 @@ class Ply:
         self.table = shear_table(*shear_samples("monotone", 0.5, 0.002, [0.4576, -7.394, 36.36, -59.31, 32.37], None))
         self.work = np.zeros(max(bending.SCRATCH, shear.SCRATCH))
         self.weight = bending.tangent_weights(self.bar1, self.bar2)
-        self.lines, self.turned = np.zeros((6 * (n + 1) + 2, LINES)), np.zeros((9, n, LINES))
+        self.lines = np.zeros(line_scratch(n))
         self.kept = np.zeros((n, n))
         self.law = (1.0, 1e-10 * 20_000.0, 0.5e-5 * 20_000.0, 1e-10, 1e-5)
 
@@ -55,7 +55,7 @@ class Ply:
         bending_forces(self.x, self.f, self.weight, self.triple1, self.triple2, self.sheet, 0, self.n, self.work)
 
     def tension(self):
-        _pull_all(self.x, self.v, self.inverse, self.bar1, self.bar2, self.kept, self.law, self.turned, self.lines)
+        _pull_all(self.x, self.v, self.inverse, self.bar1, self.bar2, self.kept, self.law, self.lines)
 
     def all(self):
         self.shear()
@@ -64,13 +64,15 @@ class Ply:
 
 
 @njit
-def _pull_all(x, v, inverse, bar1, bar2, kept, law, turned, lines):
+def _pull_all(x, v, inverse, bar1, bar2, kept, law, lines):
     """Both families twice, as in a step."""
     for sweep in range(2):
         for a in range(0, x.shape[2], LINES):
-            pull_lines(x, v, inverse, bar1, kept, law, sweep == 1, -1, a, min(a + LINES, x.shape[2]), lines)
+            b = min(a + LINES, x.shape[2])
+            pull_lines(x, v, inverse, bar1, kept, law, sweep == 1, -1, a, b, 0, x.shape[1], lines)
         for a in range(0, x.shape[1], LINES):
-            pull_rows(x, v, inverse, bar2, kept, law, sweep == 1, -1, a, min(a + LINES, x.shape[1]), turned, lines)
+            b = min(a + LINES, x.shape[1])
+            pull_rows(x, v, inverse, bar2, kept, law, sweep == 1, -1, a, b, 0, x.shape[2], lines)
 
 
 def _note(benchmark, count, unit="node"):

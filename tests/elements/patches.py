@@ -11,7 +11,7 @@ from ddf.elements.bending import bending_energy, bending_forces
 from ddf.elements.plate import plate_energy, plate_forces
 from ddf.elements.rubber import cone_volume, rubber_energy, rubber_forces
 from ddf.elements.shear import shear_energy, shear_forces
-from ddf.elements.tension import LINES, pull_kept, pull_lines, pull_rows, tension_energy
+from ddf.elements.tension import LINES, line_scratch, pull_kept, pull_lines, pull_rows, tension_energy
 from ddf.materials.shear_law import shear_samples, shear_table
 from ddf.model import SHEET
 
@@ -121,12 +121,12 @@ def pull(patch, x, v, inverse_mass, dt, family, bundle=LINES, kept=None, string=
     law = (1.0 / a, dt * dt * eh / a, 0.5 * dt * eh, dt * dt / a, dt)
     if family == 1:
         for a in range(0, m, bundle):
-            work = np.full((6 * (n + 1) + 2, LINES), np.nan)
-            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, string, -1, a, min(m, a + bundle), work)
+            work = np.full(line_scratch(n), np.nan)
+            pull_lines(x, v, inverse_mass, patch.bar1, kept, law, string, -1, a, min(m, a + bundle), 0, n, work)
     else:
         for a in range(0, n, bundle):
-            work, turned = np.full((6 * (m + 1) + 2, LINES), np.nan), np.full((9, m, LINES), np.nan)
-            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, string, -1, a, min(n, a + bundle), turned, work)
+            work = np.full(line_scratch(m), np.nan)
+            pull_rows(x, v, inverse_mass, patch.bar2, kept, law, string, -1, a, min(n, a + bundle), 0, m, work)
     return v
 
 
