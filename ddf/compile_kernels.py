@@ -55,6 +55,7 @@ def _compile_phases(contact: bool) -> None:
     from ddf.case import case_from_dict
     from ddf.dynamics import mirror, phases
     from ddf.output.raster import view_from_above
+    from ddf.postprocess import measure
     from ddf.simulate import Simulation
 
     sim = Simulation(build_scene(case_from_dict(TINY)))
@@ -66,14 +67,15 @@ def _compile_phases(contact: bool) -> None:
         phases.leave.compile((model, state, work, vector, int64, float64, int64, int64))
         phases.tool.compile((model, state, work, int64, vector, int64, float64, float64))
         phases.drift.compile((model, state, work, vector, int64))
-        view_from_above(sim.scene.state.x[:12].reshape(3, 2, 2), np.ones((1, 1), bool), (0.0, 1.0, 0.0, 1.0), pixels=2)
-    else:
-        phases.internal.compile((model, state, work, vector, int64, vector))
         phases.collect.compile((model, state, work, int64))
         mirror.fold_back.compile((model, state, work, float64, int64))
         mirror.follow.compile((model, state, work, int64))
         mirror.follow_tension.compile((model, state, int64))
         mirror.follow_speed.compile((model, state, int64))
+        measure(sim.scene)
+        view_from_above(sim.scene.state.x[:12].reshape(3, 2, 2), np.ones((1, 1), bool), (0.0, 1.0, 0.0, 1.0), pixels=2)
+    else:
+        phases.internal.compile((model, state, work, vector, int64, vector))
         sim.seek(0.0)
     sim.close()
 

@@ -12,5 +12,6 @@ types found out again for every call: compiling took a third longer.)"""
 
 FAST: dict[str, Any] = {
     "fastmath": True, "error_model": "numpy", "boundscheck": False, "nogil": True, "cache": True,
+    "no_cfunc_wrapper": True,
 }  # fmt: skip
-"""Options of kernels."""
+"""Options of kernels. (A wrapper for calls from C, which nothing does, is a tenth of what there is to compile.)"""

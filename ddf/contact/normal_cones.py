@@ -21,7 +21,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ddf.jit import FAST
+from ddf.jit import FAST, INLINE
 
 TILE = 4
 FAR = 1e30
@@ -198,6 +198,12 @@ def walk(levels, cones, boxes, widest, reach, stack, top):
     return -1
 
 
+@njit(**INLINE)
+def _put(stack, top, k, a, b, c, d):
+    """Write a row of the stack number by number (numba compiles seconds of messages for a row at once)."""
+    stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3], stack[top, 4] = k, a, b, c, d
+
+
 @njit(**FAST)
 def _split(rows, cols, k, p, q, r, s, stack, top):
     """Put the pairs of the four children of two tiles, or of one with itself, on the stack."""
@@ -207,7 +213,7 @@ def _split(rows, cols, k, p, q, r, s, stack, top):
         for h in range(g if same else 0, 4):
             c, d = 2 * r + h // 2, 2 * s + h % 2
             if a < rows and b < cols and c < rows and d < cols:
-                stack[top] = k - 1, a, b, c, d
+                _put(stack, top, k - 1, a, b, c, d)
                 top += 1
     return top
 
@@ -215,5 +221,5 @@ def _split(rows, cols, k, p, q, r, s, stack, top):
 @njit(**FAST)
 def begin(levels, stack):
     """Put the whole sheet with itself on the stack (STACK, 5); returns 1, for `walk`."""
-    stack[0] = levels.shape[0] - 1, 0, 0, 0, 0
+    _put(stack, 0, levels.shape[0] - 1, 0, 0, 0, 0)
     return 1

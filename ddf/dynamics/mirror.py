@@ -29,18 +29,25 @@ from __future__ import annotations
 
 from numba import njit
 
-from ddf.jit import FAST
+from ddf.jit import FAST, INLINE
 from ddf.model import scalars, vectors
 
 NEAR = 0.3
 """Of the distance at which a sheet touches itself, for nodes near the plane along the sheet."""
 
 
+@njit(**INLINE)
+def _flat(pool, sheet):
+    """Sheet's slice of a vector pool, component by component, and how many numbers a component has."""
+    size = sheet.rows * sheet.cols
+    return pool[3 * sheet.node : 3 * (sheet.node + size)], size
+
+
 @njit(**FAST)
 def set_aside(model, state, work, b):
     """Remember the forces on a block's ghosts and nodes on the plane, before a diaphragm's own are added."""
     sheet = model.sheets[model.blocks[b].sheet]
-    f, size = state.f[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    f, size = _flat(state.f, sheet)
     for g in range(model.ghost_first[b], model.ghost_first[b + 1]):
         for c in range(3):
             work.aside[g, c] = f[c * size + model.ghosts[g, 0] - sheet.node]
@@ -54,7 +61,7 @@ def set_aside(model, state, work, b):
 def take_share(model, state, work, b):
     """Of what was added since drop all on ghosts, half on the plane."""
     sheet = model.sheets[model.blocks[b].sheet]
-    f, size = state.f[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    f, size = _flat(state.f, sheet)
     for g in range(model.ghost_first[b], model.ghost_first[b + 1]):
         for c in range(3):
             f[c * size + model.ghosts[g, 0] - sheet.node] = work.aside[g, c]
@@ -72,7 +79,7 @@ def fold_back(model, state, work, share, b):
     share: of a step's contact force in its running mean.
     """
     sheet = model.sheets[model.blocks[b].sheet]
-    f, size = state.f[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    f, size = _flat(state.f, sheet)
     for k in range(model.image_first[b], model.image_first[b + 1]):
         g = model.images[k]
         ghost, image = model.ghosts[g, 0] - sheet.node, model.ghosts[g, 1] - sheet.node
@@ -92,7 +99,7 @@ def fold_back(model, state, work, share, b):
 def let_go(model, state, b):
     """Take the forces off a block's ghosts: their images have them."""
     sheet = model.sheets[model.blocks[b].sheet]
-    f, size = state.f[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    f, size = _flat(state.f, sheet)
     for g in range(model.ghost_first[b], model.ghost_first[b + 1]):
         for c in range(3):
             f[c * size + model.ghosts[g, 0] - sheet.node] = 0.0
@@ -102,7 +109,7 @@ def let_go(model, state, b):
 def stay_on_plane(model, state, b):
     """Nodes of a block on the plane do not leave it."""
     sheet = model.sheets[model.blocks[b].sheet]
-    v, size = state.v[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    v, size = _flat(state.v, sheet)
     for p in range(model.plane_first[b], model.plane_first[b + 1]):
         v[model.mirror * size + model.plane[p] - sheet.node] = 0.0
 
@@ -134,9 +141,8 @@ def press_whole(model, state, b, before):
 def follow(model, state, work, b):
     """Put a block's ghosts where the images of their images are, packed ones too."""
     sheet = model.sheets[model.blocks[b].sheet]
-    size = sheet.rows * sheet.cols
-    first, last = 3 * sheet.node, 3 * (sheet.node + size)
-    x, v = state.x[first:last], state.v[first:last]
+    x, size = _flat(state.x, sheet)
+    v, _ = _flat(state.v, sheet)
     for g in range(model.ghost_first[b], model.ghost_first[b + 1]):
         ghost, image = model.ghosts[g, 0], model.ghosts[g, 1]
         for c in range(3):
@@ -155,7 +161,7 @@ def follow(model, state, work, b):
 def follow_speed(model, state, b):
     """Give a block's ghosts the speeds of their images, for the fibre lines that run through them."""
     sheet = model.sheets[model.blocks[b].sheet]
-    v, size = state.v[3 * sheet.node : 3 * (sheet.node + sheet.rows * sheet.cols)], sheet.rows * sheet.cols
+    v, size = _flat(state.v, sheet)
     for g in range(model.ghost_first[b], model.ghost_first[b + 1]):
         for c in range(3):
             speed = v[c * size + model.ghosts[g, 1] - sheet.node]

@@ -188,5 +188,6 @@ def sample_points(values, origin, spacing, points):
     """`sample` at points (k, 3): (k, 4)."""
     out = np.empty((points.shape[0], 4))
     for p in range(points.shape[0]):
-        out[p] = sample(values, origin, spacing, points[p, 0], points[p, 1], points[p, 2])
+        d, nx, ny, nz = sample(values, origin, spacing, points[p, 0], points[p, 1], points[p, 2])
+        out[p, 0], out[p, 1], out[p, 2], out[p, 3] = d, nx, ny, nz
     return out
