@@ -66,7 +66,7 @@ class Simulation:
 
     def seek(self, way: float) -> None:
         """Look for nodes that meet their own sheet, within the way that sheets can go in the next batch [mm]."""
-        self._self_contact.seek(way)
+        self._self_contact.seek(way, self.team.each)
 
     def fastest(self, k: int) -> float:
         """Largest speed in sheet k [mm/s]."""

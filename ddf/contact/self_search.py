@@ -9,6 +9,8 @@ follows from the state, so that a run that is resumed finds the same.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -216,7 +218,11 @@ class SelfContact:
             fields = [sheet, model.lines, sheet_vectors(model, state.x, k), cover, quads, cell, area, centre]
             self._searches.append((pairs, [*fields, float(model.pairs["offset"][pairs[0]])], [*sides, tiles]))
 
-    def seek(self, skin: float) -> None:
-        """Find the places of all nodes near another part of their sheet; skin: see the function `seek` [mm]."""
-        for pairs, fields, rest in self._searches:
-            self._idle[pairs] = [not any_node for any_node in seek(*fields, skin, *rest)]
+    def seek(self, skin: float, each: Callable[[list[Callable[[], Any]]], list[Any]]) -> None:
+        """Find the places of all nodes near another part of their sheet; skin: see the function `seek` [mm].
+
+        each: calls functions, one a sheet, and returns what they return.
+        """
+        found = each([partial(seek, *fields, skin, *rest) for _, fields, rest in self._searches])
+        for (pairs, _, _), any_node in zip(self._searches, found, strict=True):
+            self._idle[pairs] = [not node for node in any_node]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 from llvmlite import ir
@@ -92,6 +93,15 @@ class Team:
         function(0, self.members, self.sync, *arguments)
         for other in others:
             other.result()
+
+    def each(self, tasks: list[Callable[[], Any]]) -> list[Any]:
+        """Call tasks that know nothing of each other, on whichever member is free; returns their results."""
+        if self._pool is None:
+            return [task() for task in tasks]
+        waiting = [self._pool.submit(task) for task in tasks]
+        # from the last on, what no other thread has begun is done here
+        results = [task() if at.cancel() else at.result() for task, at in zip(tasks[::-1], waiting[::-1], strict=True)]
+        return results[::-1]
 
     def close(self) -> None:
         """End the threads."""

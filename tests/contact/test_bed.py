@@ -1,4 +1,4 @@
-"""The tool bears plies through the diaphragm: rest, energy, and a formed apex without crossings."""
+"""The tool bears plies through the diaphragm: rest, energy, friction, a rising tool."""
 
 import numpy as np
 import pytest

@@ -52,3 +52,17 @@ def test_an_error_of_a_member_is_raised():
             team.run(fails)
     finally:
         team.close()
+
+
+@pytest.mark.parametrize("members", [1, 2, 4])
+def test_tasks_shared_among_the_team_return_in_their_order(members):
+    team = Team(members)
+    assert team.each([lambda k=k: k * k for k in range(7)]) == [k * k for k in range(7)]
+    assert team.each([]) == []
+
+    def fails():
+        raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        team.each([lambda: 1, fails, lambda: 2])
+    team.close()
