@@ -228,15 +228,15 @@ def pull_lines(x, v, inverse_mass, bar, kept, law, string, mirror, a, b, first, 
     """
     # the kernels above take the component normal to the mirror plane as the second one
     r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
-    o = FIELDS * LINES
+    o = np.int64(NEXT)
     for values in (x[r], x[q], x[s], v[r], v[q], v[s], inverse_mass, bar, kept):
         _gather(values, a, b, first, end, work, o)
         o += LINES
     _solve(work, end - first, law, string)
-    _scatter(work, (FIELDS + 3) * LINES, v[r], a, b, first, end)
-    _scatter(work, (FIELDS + 4) * LINES, v[q], a, b, first, end)
-    _scatter(work, (FIELDS + 5) * LINES, v[s], a, b, first, end)
-    _scatter(work, (FIELDS + 8) * LINES, kept, a, b, first, end)
+    _scatter(work, np.int64(NEXT + U), v[r], a, b, first, end)
+    _scatter(work, np.int64(NEXT + V), v[q], a, b, first, end)
+    _scatter(work, np.int64(NEXT + W), v[s], a, b, first, end)
+    _scatter(work, np.int64(NEXT + KEPT), kept, a, b, first, end)
 
 
 @njit(**FAST)
@@ -244,17 +244,17 @@ def pull_rows(x, v, inverse_mass, bar, kept, law, string, mirror, low, high, fir
     """The same along the second grid direction for nodes first..end-1 of rows low..high-1."""
     r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
     for lane in range(LINES):
-        i, o = min(low + lane, high - 1), FIELDS * LINES + lane
+        i, o = min(low + lane, high - 1), np.int64(NEXT) + lane
         for row in (x[r, i], x[q, i], x[s, i], v[r, i], v[q, i], v[s, i], inverse_mass[i], bar[i], kept[i]):
             _turn(row, first, end, work, o)
             o += LINES
     _solve(work, end - first, law, string)
     for lane in range(high - low):
-        i, o = low + lane, FIELDS * LINES + lane
-        _turn_back(work, o + 3 * LINES, v[r, i], first, end)
-        _turn_back(work, o + 4 * LINES, v[q, i], first, end)
-        _turn_back(work, o + 5 * LINES, v[s, i], first, end)
-        _turn_back(work, o + 8 * LINES, kept[i], first, end)
+        i = low + lane
+        _turn_back(work, np.int64(NEXT + U) + lane, v[r, i], first, end)
+        _turn_back(work, np.int64(NEXT + V) + lane, v[q, i], first, end)
+        _turn_back(work, np.int64(NEXT + W) + lane, v[s, i], first, end)
+        _turn_back(work, np.int64(NEXT + KEPT) + lane, kept[i], first, end)
 
 
 @njit(**FAST)

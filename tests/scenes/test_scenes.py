@@ -6,16 +6,15 @@ from random_scenes import random_case
 
 DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
 """Among the quickest: all tools, fillets down to none, 1 to 4 plies, most orders of loading."""
+CRUSHED = 43
+"""Four frictionless plies crushed on a sharp ridge: where families of one run nearly alike, bars swing by 2.5 %."""
 
 
-CRUSHED = pytest.mark.xfail(
-    reason="frictionless plies crushed on a ridge: where both families of one run nearly alike, bars swing by 2.5 %"
-)
-
-
-@pytest.mark.parametrize("number", [pytest.param(n, marks=CRUSHED if n == 43 else ()) for n in DOZEN])
+@pytest.mark.parametrize("number", DOZEN)
 def test_scene_comes_to_rest(number, tmp_path):
     row = judged_run(random_case(number), tmp_path / "run", frames=False)
     assert row["end"] == "settled", row
-    assert row["strain_percent"] < 0.3
     assert row["ply_in_tool_mm"] < 0.5
+    if number == CRUSHED and row["strain_percent"] >= 0.3:
+        pytest.xfail(f"bars of nearly alike families swing by {row['strain_percent']:.2g} %")
+    assert row["strain_percent"] < 0.3
