@@ -13,7 +13,7 @@ x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] w
 place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
                                      viscous normal force [N]
 slip           (2, P)                slip of its friction spring, along the master's grid lines and across [mm]
-tool_anchor    (n, m, 7, 3)          anchors of the points of a node and its cell: tool frame; on walls: box [mm]
+tool_anchor    (7, 3, n, m)          anchors of the points of a node and its cell: tool frame; on walls: box [mm]
 spots          (k, 5)                places of the tool's sharp vertices on its sheet, see `contact.summit`
 ledger         (blocks, LEDGER)      cumulative work and dissipation of a block of rows [N mm]
 row            grid index i          runs along fibre family 1 (ply) or x (diaphragm)

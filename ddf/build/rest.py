@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ddf.build.summits import NO_SPOTS
-from ddf.contact.tool import FREE, POINTS
+from ddf.contact.tool import POINTS
+from ddf.contact.tool_point import FREE
 from ddf.elements.shell_membrane.history import HISTORY, M_C11, M_C22, S_C11, S_C22
 from ddf.elements.shell_membrane.rotations import normals
 from ddf.model import LEDGER, SHELL_PLY, SPRINGS, Model, State, sheet_shells, sheet_vectors
@@ -21,8 +22,8 @@ def state_at_rest(model: Model, x: FloatArray, places: FloatArray, spots: FloatA
     """
     sheet = model.sheets[model.tool_sheet]
     nodes = (int(sheet["rows"]), int(sheet["cols"])) if model.tool_sheet >= 0 else (1, 1)
-    anchors = np.zeros((*nodes, POINTS, 3))
-    anchors[..., 0] = FREE
+    anchors = np.zeros((POINTS, 3, *nodes))
+    anchors[:, 0] = FREE
     shells = model.sheets["kind"] == SHELL_PLY
     size = int((model.sheets["rows"] * model.sheets["cols"])[shells].sum())
     state = State(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ddf.contact.summit import SPOT, SUMMIT
-from ddf.contact.tool import FREE
+from ddf.contact.tool_point import FREE
 from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.summits import summits
 from ddf.mesh.tool import TriangleMesh

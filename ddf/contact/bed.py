@@ -31,7 +31,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from ddf.contact.field import sample
+from ddf.contact.field import look_forward, sample
 from ddf.contact.friction import length
 from ddf.contact.tool import LONGEST_SLEEP
 from ddf.jit import FAST
@@ -41,6 +41,9 @@ MASSES = 2.6
 
 RISE = 0.02
 """Of what is left of h, how much the bed rises in a step."""
+
+FORWARD = 8
+"""Nodes before its turn that what the tool's field has at a node is asked for."""
 
 #: columns of what bears a node: spring force [N], its rate coefficient [N s/mm], normal (3), velocity before (3) [mm/s]
 BED = 8
@@ -61,6 +64,9 @@ def find_borne(x, v, area, inverse, tool, origin, spacing, law, motion, reach, d
     for i in range(low, high):
         for j in range(x.shape[2]):
             borne[i, j] = False
+            k = j + FORWARD
+            if k < x.shape[2] and sleep[i, k] <= 0:
+                look_forward(tool, origin, spacing, x[0, i, k], x[1, i, k], x[2, i, k] - z)
             if sleep[i, j] > 0:
                 sleep[i, j] -= 1
                 continue

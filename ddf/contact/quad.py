@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic, models, register_model
 
 VECTOR = ir.VectorType(ir.DoubleType(), 4)
+SINGLES = ir.VectorType(ir.FloatType(), 4)
 
 
 class _Quad(types.Type):
@@ -27,10 +29,10 @@ class _QuadModel(models.PrimitiveModel):
         super().__init__(manager, kind, VECTOR)
 
 
-def _address(context, builder, kind, array, index):
-    """Pointer to four doubles of a flat contiguous array."""
+def _address(context, builder, kind, array, index, vector=VECTOR):
+    """Pointer to four numbers of a contiguous array seen as flat."""
     data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), vector.as_pointer())
 
 
 def _splat(builder, number):
@@ -42,17 +44,36 @@ def _splat(builder, number):
 
 @intrinsic
 def load(typing, array, index):
-    """array[index : index + 4]; array (n,) contiguous float64, index uint64."""
+    """Four numbers from place `index` (uint64) on of a contiguous array seen as flat, float64 or float32."""
+    single = array.dtype == types.float32
 
     def build(context, builder, signature, args):
-        return builder.load(_address(context, builder, signature.args[0], *args), align=8)
+        kind = SINGLES if single else VECTOR
+        found = builder.load(_address(context, builder, signature.args[0], *args, kind), align=4 if single else 8)
+        return builder.fpext(found, VECTOR) if single else found
 
     return QUAD(array, types.uint64), build
 
 
 @intrinsic
+def expect(typing, array, index):
+    """Have the processor fetch what lies at place `index` (uint64) of a contiguous array seen as flat."""
+
+    def build(context, builder, signature, args):
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        pointer, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [pointer, number, number, number])
+        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        place = builder.bitcast(builder.gep(data, [args[1]]), pointer)
+        builder.call(function, [place, number(0), number(3), number(1)])  # to read, soon again, data
+        return context.get_dummy_value()
+
+    return types.void(array, types.uint64), build
+
+
+@intrinsic
 def store(typing, array, index, value):
-    """array[index : index + 4] = value."""
+    """Put the value to place `index` (uint64) and the three after it of a contiguous float64 array seen as flat."""
 
     def build(context, builder, signature, args):
         builder.store(args[2], _address(context, builder, signature.args[0], *args[:2]), align=8)
@@ -109,7 +130,7 @@ def add_scaled(typing, number, value, rest):
 
 @intrinsic
 def part(typing, value, index):
-    """Component 0, 1 or 2 of a quad."""
+    """Component 0, 1, 2 or 3 of a quad."""
 
     def build(context, builder, signature, args):
         return builder.extract_element(args[0], args[1])

@@ -7,7 +7,7 @@ has its closest place (u, v) on the smooth surface that other sheets touch too (
 Newton's method as in `layers.py`. With n the surface's normal there, away from the tool, and N_k the weights of the
 surface's nodes,
 
-    d = n.(x - S),  x = N_k x_k;        U = A/2 K <-d>^2 and so on, as at any other point (`tool.push_point`)
+    d = n.(x - S),  x = N_k x_k;        U = A/2 K <-d>^2 and so on, as at any other point (`tool_point.py`)
 
 and, for x is closest to S, dU/dx_k = - A K <-d> N_k n. A is the area of a cell; there is no friction. The surface lies
 inside a ridge of the nodes, by h^2 k/8, so that what is drawn over the vertex covers it. (Tried before: on the bilinear
@@ -24,18 +24,35 @@ from numba import njit
 
 from ddf.contact.patch import first_order, interpolate, weights
 from ddf.contact.quad import part
-from ddf.contact.tool import PRESS, push_point, put
+from ddf.contact.tool_point import (
+    ANCHOR,
+    DAMPED,
+    FRICTION,
+    GIVE,
+    LATER,
+    NEAR,
+    NEXT,
+    NORMAL,
+    PLACE,
+    PRESS,
+    STIFF,
+    TOUCHES,
+    VELOCITY,
+    press_points,
+    set_vector,
+)
 from ddf.jit import FAST
 
 SUMMIT = 6
 """Columns of a summit: S and the vertex's outward axis (tool frame) [mm]."""
 SPOT = 5
-"""Columns of a spot: u, v on the sheet's grid; anchor of `push_point`."""
+"""Columns of a spot: u, v on the sheet's grid; anchor of its point."""
 PUSH = 8 + PRESS
 """Columns of a push: row and column of the patch's centre (row -1: no contact), weights along rows, columns; push."""
 ROUNDS = 4
 """Newton steps a time step. With one, as for layers, the push came a step late and drove a tight sheet to and fro."""
 ASTRAY = 0.1  # a place that lacks more than this, in cells, after all rounds, is none
+ZERO = np.uint64(0)
 GRAZING = 0.2  # cosine between axis and normal below which the sheet is not met but grazed
 
 
@@ -61,12 +78,12 @@ def _look(y, centre, spot, place):
 
 
 @njit(**FAST)
-def summit_forces(y, rates, f, inverse, centre, dx, dy, law, motion, dt, summits, spots, pushes, out, give):
+def summit_forces(y, rates, f, inverse, centre, dx, dy, law, motion, dt, summits, spots, pushes, out, w):
     """What all summits do to the sheet, into pushes (k, PUSH); returns the tool's work [N mm].
 
     y, rates (4 n m,): positions and velocities as quads; f (3, n, m), inverse (n, m): all other forces and of masses;
     centre (n, m, 2) from `patch_centres`; dx, dy reference cell sizes [mm]; summits (k, SUMMIT), spots (k, SPOT), which
-    are updated; law, motion, out and give as in `tool.tool_forces`.
+    are updated; law, motion and out as in `tool.tool_forces`; w: scratch of a chunk of points.
     """
     _, stiffness, damping, _ = law
     z, speed = motion
@@ -100,16 +117,25 @@ def summit_forces(y, rates, f, inverse, centre, dx, dy, law, motion, dt, summits
                 fy += h * f[1, row, col]
                 fz += h * f[2, row, col]
         area = dx[min(p, n - 2)] * dy[min(q, m - 2)]
-        k_a, c_a = stiffness * area, damping * area
-        push[0] = -1.0
+        nx, ny, nz = normal
+        set_vector(w, PLACE, ZERO, place[0], place[1], place[2])
+        set_vector(w, VELOCITY, ZERO, u[0], u[1], u[2])
+        set_vector(w, LATER, ZERO, fx, fy, fz)
+        set_vector(w, NORMAL, ZERO, nx, ny, nz)
+        set_vector(w, ANCHOR, ZERO, spot[2], spot[3], spot[4])
         # the point stays at the vertex: friction on a spring would see no slip
-        if push_point(place, u, (fx, fy, fz), d, normal, 0.0, k_a, c_a, 0.0, dt, spot[2:], out, give):
+        w[NEAR], w[STIFF], w[DAMPED], w[FRICTION] = d, stiffness * area, damping * area, 0.0
+        press_points(w, np.uint64(1), dt, out)
+        for c in range(3):
+            spot[2 + c] = w[ANCHOR + np.uint64(c) * NEXT]
+        push[0] = -1.0
+        if w[TOUCHES] > 0.0:
             push[0], push[1] = p, q
             for k in range(3):
                 push[2 + k], push[5 + k] = a[k], b[k]
             for c in range(PRESS):
-                push[8 + c] = give[c]
-            work += give[2] * speed * dt
+                push[8 + c] = w[GIVE + np.uint64(c) * NEXT]
+            work += push[10] * speed * dt
     return work
 
 
@@ -124,4 +150,6 @@ def add_pushes(press, pressed, pushes, low, high):
         for row in range(max(low, p - 1), min(high, p + 2)):
             pressed[row] = True
             for l in range(3):
-                put(press[row, q - 1 + l], push[3 + row - p] * push[5 + l], push[8:])
+                weight = push[3 + row - p] * push[5 + l]
+                for c in range(PRESS):
+                    press[row, q - 1 + l, c] += weight * push[8 + c]

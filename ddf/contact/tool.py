@@ -1,18 +1,8 @@
 """Contact of a diaphragm with the rigid tool, the platform around it and the box's walls, implicit in time.
 
 The platform is met by the nodes (d = z, n = e_z), the tool by nodes, middles of edges and centres of cells, so that
-no ridge passes between nodes. A point at p (tool frame: it moves with the tool) with signed distance d(p) and
-gradient n is pushed by
-
-    (K A (offset - d) - (C A + dt K A) n.v) n   where d < offset and K (offset - d) > (C + dt K) n.v*
-
-(v*: the velocity at the end of the step without the tool: by then it would still be pushed; beyond the depths HARD and
-HARDER it is 3 and 6 times as stiff, also against the rate), and held by Coulomb friction on a spring to its anchor
-of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v is the spring's force at the place that the point is
-moving to. The force goes to the node, or to the cell's four
-with the point's bilinear weights N_i, and with it the tensor
-
-    J_i = N_i (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
+no ridge passes between nodes; the law of a point is in `tool_point.py`. Its force goes to the node, or to the cell's
+four with the point's bilinear weights N_i, and its tensor J likewise.
 
 A node of mass m that touches is then accelerated by  (m + J) a = F,  F the sum of all its forces: one step of
 backward Euler in which the consistent stiffness matrix is replaced by its row sums. These are no smaller (all its
@@ -27,143 +17,90 @@ nodes next to the frame, nor those nearer to the walls than it is deep: as it co
 this rim, and cells that stick there are crushed between frame and platform like struts, on which they press with more
 than the sheet's pressure.
 
-Forces and tensors are gathered in `press`, while all other forces stand in f. The last row of a block of cells belongs
-to the next block: it goes to `carry`, which is added later in a fixed order. A cell found far from the tool does not
-look at it for as many steps as it needs at the given reach to come near.
+Points that touch, or did a step ago, are pressed together by chunks. Forces and tensors are gathered in `press`, while
+all other forces stand in f. The last row of a block of cells belongs to the next block: it goes to `carry`, which is
+added later in a fixed order. A cell found far from the tool does not look at it for as many steps as it needs at the
+given reach to come near.
 """
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
-from ddf.contact.field import sample
-from ddf.contact.friction import TANGENTIAL, coulomb, length
+from ddf.contact.field import look_forward, sample
+from ddf.contact.friction import length
+from ddf.contact.quad import add_scaled, load, part, quad_with, scaled, store
+from ddf.contact.tool_point import (
+    ANCHOR,
+    CHUNK,
+    DAMPED,
+    FREE,
+    FRICTION,
+    GIVE,
+    LATER,
+    NEAR,
+    NEXT,
+    NORMAL,
+    PLACE,
+    POINT_ROWS,
+    PRESS,
+    STIFF,
+    THIRD,
+    TOUCHES,
+    VELOCITY,
+    press_points,
+    set_vector,
+)
 from ddf.jit import FAST, INLINE
 
-FREE = 1.0e30
-HARD, HARDER = 0.1, 0.15
-"""Depths [mm] beyond which the penalty is 3 and 6 times as stiff: on apexes, where fibres press with some 10 MPa."""
-WALL, POINTS = 5, 7
-"""Of the contact points of a node: the first on a wall, and how many there are."""
+PLATFORM, NODE, ALONG_COLUMNS, ALONG_ROWS, CENTRE, WALL = range(6)
+"""Points of a node: on the platform; on the tool itself, with the middles of two of its cell's edges and the cell's
+centre; the first of two on walls (across x and y)."""
+POINTS = 7
 LONGEST_SLEEP = 16
-
-#: columns of `press`, what the tool does to each node: force [N], tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous
-#: part of the force [N]
-PRESS = 12
+ONE, FOUR = np.uint64(1), np.uint64(4)
 
 
-@njit(**INLINE)
-def _spring(k, depth):
-    """Force of the penalty at a depth, and what it stores."""
-    hard, harder = max(0.0, depth - HARD), max(0.0, depth - HARDER)
-    return k * (depth + 2.0 * hard + 3.0 * harder), 0.5 * k * (depth**2 + 2.0 * hard**2 + 3.0 * harder**2)
+def point_scratch(members: int, widest: int) -> tuple[np.ndarray, ...]:
+    """Scratch of `tool_forces`, one row a member.
 
-
-@njit(**INLINE)
-def _times(depth):
-    """How many times as stiff the penalty is at a depth."""
-    return 6.0 if depth > HARDER else 3.0 if depth > HARD else 1.0
-
-
-@njit(**INLINE)
-def _held(p, v, dt, anchor, nx, ny, nz):
-    """Stretches of the friction spring along the surface, now and in the last step, multiplied."""
-    x, y, z = p[0] - anchor[0], p[1] - anchor[1], p[2] - anchor[2]
-    ox, oy, oz = x - dt * v[0], y - dt * v[1], z - dt * v[2]
-    return x * ox + y * oy + z * oz - (x * nx + y * ny + z * nz) * (ox * nx + oy * ny + oz * nz)
-
-
-@njit(**INLINE)
-def _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
-    """What one contact point does, into give (PRESS,); returns whether it touches.
-
-    p, v, ahead: position, velocity, and velocity at the end without the tool, relative to the tool; d, n: distance
-    and normal there; k [N/mm], c [N s/mm]; updates its anchor and the energies out (4,): normal spring, tangential
-    spring, friction loss, loss where contact begins or ends [N mm].
+    Numbers of a chunk's points and whose they are; velocities ahead; of a row's points on the tool: places, distance
+    and normal, kind and column.
     """
-    near = d - offset
-    nx, ny, nz = n
-    rate = nx * v[0] + ny * v[1] + nz * v[2]
-    if near >= 0.0:
-        if anchor[0] < FREE:
-            before = max(0.0, dt * rate - near)
-            out[3] += 0.5 * TANGENTIAL * k * _held(p, v, dt, anchor, nx, ny, nz)
-            spring, stored = _spring(k, before)
-            out[3] += stored - 0.5 * spring * dt * rate
-        anchor[0] = FREE
-        return False
-    px, py, pz = p
-    spring, stored = _spring(k, -near)
-    drag = TANGENTIAL * (c + dt * k)
-    c += dt * k * _times(-near)
-    inertia = dt * c
-    pushed = spring > c * (nx * ahead[0] + ny * ahead[1] + nz * ahead[2])
-    normal = spring - c * rate if pushed else 0.0
-    out[0] += stored
-    new = anchor[0] >= FREE
-    before = 0.0 if new else max(0.0, dt * rate - near)
-    if new or _times(before) != _times(-near):  # the mean force acts on the way, but stores less where it has a kink
-        held, left = _spring(k, before)
-        out[3] -= 0.5 * (spring + held) * dt * rate + stored - left
-    if new:
-        anchor[0], anchor[1], anchor[2] = px, py, pz
-    sx, sy, sz = px - anchor[0], py - anchor[1], pz - anchor[2]
-    s = sx * nx + sy * ny + sz * nz
-    sx, sy, sz = sx - s * nx, sy - s * ny, sz - s * nz
-    vx, vy, vz = v[0] - rate * nx, v[1] - rate * ny, v[2] - rate * nz
-    k *= TANGENTIAL
-    tx, ty, tz = -k * sx - drag * vx, -k * sy - drag * vy, -k * sz - drag * vz
-    limit = mu * max(0.0, normal)
-    share = coulomb(length(tx, ty, tz), limit)
-    tx, ty, tz = tx * share, ty * share, tz * share
-    stretch = length(sx, sy, sz)
-    keep = 1.0
-    if share < 1.0:
-        keep = min(1.0, limit / max(k * stretch, 1e-30))
-        anchor[0], anchor[1], anchor[2] = px - keep * sx, py - keep * sy, pz - keep * sz
-    out[1] += 0.5 * k * (keep * stretch) ** 2
-    before = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
-    out[2 if pushed else 3] += 0.5 * k * (1.0 - keep) * (before + keep * stretch * stretch)
-    held = k * keep
-    along = dt * drag * share
-    across = (inertia if pushed else 0.0) - along
-    viscous = normal - spring
-    give[0], give[1], give[2] = normal * nx + tx, normal * ny + ty, normal * nz + tz
-    give[3], give[4], give[5] = along + across * nx * nx, along + across * ny * ny, along + across * nz * nz
-    give[6], give[7], give[8] = across * nx * ny, across * nx * nz, across * ny * nz
-    give[9], give[10], give[11] = (
-        viscous * nx + tx + held * sx,
-        viscous * ny + ty + held * sy,
-        viscous * nz + tz + held * sz,
+    return (
+        np.zeros((members, POINT_ROWS * CHUNK)),
+        np.zeros((members, 3, CHUNK), np.int64),
+        np.zeros((members, 8 * widest)),
+        np.zeros((members, 16 * widest)),
+        np.zeros((members, 16 * widest)),
+        np.zeros((members, 2, 4 * widest), np.int64),
     )
-    return True
-
-
-@njit(**FAST)
-def push_point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give):
-    """`_point`, compiled once for where it is not worth a copy of its own."""
-    return _point(p, v, ahead, d, n, offset, k, c, mu, dt, anchor, out, give)
 
 
 @njit(**INLINE)
-def put(row, weight, give):
-    """Add a point's share to a node's row of press (PRESS,)."""
-    for c in range(PRESS):
-        row[c] += weight * give[c]
+def put(row, k, weight, w, t):
+    """Add a weight of what the tool does to point t of a chunk to PRESS numbers, from place k of `row` on."""
+    o = GIVE + t
+    for _ in range(3):
+        give = quad_with(w[o], w[o + NEXT], w[o + NEXT + NEXT], w[o + THIRD])
+        store(row, k, add_scaled(weight, give, load(row, k)))
+        o += THIRD + NEXT
+        k += FOUR
 
 
 @njit(**INLINE)
-def _mean(a, c, i, k, j, l, r, s):
-    """Component c of a (3, n, m) at the place (r, s) between rows i, k and columns j, l."""
-    return (1 - r) * ((1 - s) * a[c, i, j] + s * a[c, i, l]) + r * ((1 - s) * a[c, k, j] + s * a[c, k, l])
-
-
-@njit(**INLINE)
-def _push(f, inverse, c, i, k, j, l, r, s):
-    """The same of f / m."""
-    return (1 - r) * ((1 - s) * f[c, i, j] * inverse[i, j] + s * f[c, i, l] * inverse[i, l]) + r * (
-        (1 - s) * f[c, k, j] * inverse[k, j] + s * f[c, k, l] * inverse[k, l]
-    )
+def _add(w, whose, t, kind, i, j, p, u, later, near, normal, law, anchors):
+    """Add point t to a chunk; p, u, later: quads; law = (K A, C A, friction). Returns how many there are now."""
+    whose[0, t], whose[1, t], whose[2, t] = kind, i, j
+    set_vector(w, PLACE, t, part(p, 0), part(p, 1), part(p, 2))
+    set_vector(w, VELOCITY, t, part(u, 0), part(u, 1), part(u, 2))
+    set_vector(w, LATER, t, part(later, 0), part(later, 1), part(later, 2))
+    set_vector(w, NORMAL, t, normal[0], normal[1], normal[2])
+    set_vector(w, ANCHOR, t, anchors[kind, 0, i, j], anchors[kind, 1, i, j], anchors[kind, 2, i, j])
+    w[NEAR + t] = near
+    w[STIFF + t], w[DAMPED + t], w[FRICTION + t] = law
+    return t + ONE
 
 
 @njit(**INLINE)
@@ -180,120 +117,181 @@ def _from_wall(x, walls, i, j):
 
 
 @njit(**FAST)
-def _walls(x, v, f, inverse, area, walls, k, c, dt, i, j, anchors, out, give, press, pressed):
-    """Let the box's walls keep node (i, j) inside; k, c per area; other arguments as in `tool_forces`."""
-    for axis in range(2):
-        low, high = walls[2 * axis], walls[2 * axis + 1]
-        inward = 1.0 if x[axis, i, j] < 0.5 * (low + high) else -1.0
-        d = x[axis, i, j] - low if inward > 0.0 else high - x[axis, i, j]
-        anchor = anchors[i, j, WALL + axis]
-        if (d >= 0.0 and anchor[0] >= FREE) or inverse[i, j] == 0.0:
-            continue
-        p, u = (x[0, i, j], x[1, i, j], x[2, i, j]), (v[0, i, j], v[1, i, j], v[2, i, j])
+def _look_ahead(v, f, inverse, dt, i, later):
+    """Velocities of row i at the step's end without the tool, as quads, into its half of `later` (8 m,)."""
+    m = inverse.shape[1]
+    row = later[4 * m * (i % 2) : 4 * m * (i % 2 + 1)].reshape((m, 4))
+    for j in range(m):
         h = dt * inverse[i, j]
-        ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
-        normal = (inward, 0.0, 0.0) if axis == 0 else (0.0, inward, 0.0)
-        a = area[i, j]
-        if push_point(p, u, ahead, d, normal, 0.0, k * a, c * a, 0.0, dt, anchor, out, give):
-            pressed[i] = True
-            put(press[i, j], 1.0, give)
+        row[j, 0] = v[0, i, j] + h * f[0, i, j]
+        row[j, 1] = v[1, i, j] + h * f[1, i, j]
+        row[j, 2] = v[2, i, j] + h * f[2, i, j]
+
+
+@njit(**INLINE)
+def _middle(y, kind, a, b, c, d):
+    """Mean of the nodes between which a point lies; a, b, c, d: where the cell's four begin in y."""
+    if kind == NODE:
+        return load(y, a)
+    if kind == ALONG_COLUMNS:
+        return scaled(0.5, add_scaled(1.0, load(y, a), load(y, b)))
+    if kind == ALONG_ROWS:
+        return scaled(0.5, add_scaled(1.0, load(y, a), load(y, c)))
+    first, second = add_scaled(1.0, load(y, a), load(y, b)), add_scaled(1.0, load(y, c), load(y, d))
+    return scaled(0.25, add_scaled(1.0, first, second))
+
+
+@njit(**FAST)
+def _flush(w, whose, count, press, pressed, carry, anchors, speed, dt, high, out):
+    """Press a chunk's points, add what the tool does to their nodes; returns its work, and if carry is used."""
+    m = press.shape[1]
+    press_points(w, count, dt, out)
+    work = 0.0
+    carried = False
+    for t in range(count):
+        kind, i, j = whose[0, t], whose[1, t], whose[2, t]
+        for c in range(3):
+            anchors[kind, c, i, j] = w[ANCHOR + np.uint64(c) * NEXT + t]
+        if w[TOUCHES + t] == 0.0:
+            continue
+        work += w[GIVE + NEXT + NEXT + t] * speed * dt
+        pressed[i] = True
+        beside = kind in (ALONG_COLUMNS, CENTRE)
+        below = kind in (ALONG_ROWS, CENTRE)
+        weight = 0.25 if beside and below else 0.5 if beside or below else 1.0
+        k = np.uint64(PRESS * (i * m + j))
+        put(press, k, weight, w, t)
+        if beside:
+            put(press, k + np.uint64(PRESS), weight, w, t)
+        if below and i + 1 < high:
+            pressed[i + 1] = True
+            k += np.uint64(PRESS * m)
+            put(press, k, weight, w, t)
+            if beside:
+                put(press, k + np.uint64(PRESS), weight, w, t)
+        elif below:
+            carried = True
+            k = np.uint64(PRESS * j)
+            put(carry, k, weight, w, t)
+            if beside:
+                put(carry, k + np.uint64(PRESS), weight, w, t)
+    return work, carried
+
+
+@njit(**FAST)
+def _points_of_row(y, lift, sleep, i, n, tool, origin, spacing, places, whose):
+    """Places of a row's points on the tool's own grid, and kind and column of each; returns how many.
+
+    What the tool's field has there is seldom in a cache: it is asked for here and looked up later.
+    """
+    m = sleep.shape[1]
+    k = min(i + 1, n - 1)
+    count = 0
+    for j in range(m):
+        if sleep[i, j] > 0:
+            sleep[i, j] -= 1
+            continue
+        l = min(j + 1, m - 1)
+        a, b = np.uint64(4 * (i * m + j)), np.uint64(4 * (i * m + l))
+        c, d = np.uint64(4 * (k * m + j)), np.uint64(4 * (k * m + l))
+        for kind in range(NODE, CENTRE + 1):
+            if (kind >= ALONG_ROWS and k == i) or (kind in (ALONG_COLUMNS, CENTRE) and l == j):
+                continue
+            p = add_scaled(1.0, _middle(y, kind, a, b, c, d), lift)
+            look_forward(tool, origin, spacing, part(p, 0), part(p, 1), part(p, 2))
+            store(places, np.uint64(4 * count), p)
+            whose[0, count], whose[1, count] = kind, j
+            count += 1
+    return count
+
+
+@njit(**FAST)
+def _look_up(tool, origin, spacing, places, count, found):
+    """Distance and normal at the first `count` places, as quads."""
+    for q in range(count):
+        d, nx, ny, nz = sample(tool, origin, spacing, places[4 * q], places[4 * q + 1], places[4 * q + 2])
+        store(found, np.uint64(4 * q), quad_with(d, nx, ny, nz))
 
 
 @njit(**FAST)
 def tool_forces(
-    x, v, f, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, box, motion, reach, dt,
-    anchors, sleep, low, high, out, give,
+    x, v, f, y, rates, inverse, press, pressed, carry, area, dx, dy, tool, origin, spacing, law, box, motion, reach, dt,
+    anchors, sleep, low, high, out, scratch,
 ):  # fmt: skip
     """Gather what the tool does to nodes and cells of rows low..high-1; returns its work [N mm], and if carry is used.
 
-    x, v, f (3, n, m): f all other forces; inverse (n, m) of the masses; press (n, m, PRESS); carry (m + 2, PRESS);
-    pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy reference cell sizes [mm];
-    law = (offset, stiffness, damping, friction); box: whether walls stand under the sheet's edges, and where (4,):
-    least and largest x, then y; motion = (z, speed) of the tool's base; reach: way that a point can go in a step [mm];
-    anchors (n, m, POINTS, 3): of the node on the platform, then of the node, the middles of the edges along columns and
-    rows, and the centre on the tool, of the node on the walls across x and y;
-    sleep (n, m) int16; out (4,) as in `_point`; give (PRESS,) scratch.
+    x, v, f (3, n, m): f all other forces; y, rates (4 n m,): x and v as quads; inverse (n, m) of the masses; press
+    (n, m, PRESS); carry (m + 2, PRESS); pressed (n,) bool: rows of press in use; area (n, m) of the nodes [mm2]; dx, dy
+    reference cell sizes [mm]; law = (offset, stiffness, damping, friction); box: whether walls stand under the sheet's
+    edges, and where (4,): least and largest x, then y; motion = (z, speed) of the tool's base; reach: way that a point
+    can go in a step [mm]; anchors (POINTS, 3, n, m); sleep (n, m) int16; out (4,) as in `press_points`; scratch of a
+    member from `point_scratch`.
     """
     offset, stiffness, damping, mu = law
     boxed, walls = box
     z, speed = motion
-    n, m = x.shape[1], x.shape[2]
+    w, whose, later, places, found, owners = scratch
+    n, m = inverse.shape
+    lift, moving = quad_with(0.0, 0.0, -z, 0.0), quad_with(0.0, 0.0, -speed, 0.0)
     work = 0.0
     carried = False
     depth = x[2, 0, 0] - offset - z if boxed else 0.0
+    t = np.uint64(0)
+    if low < high:
+        _look_ahead(v, f, inverse, dt, low, later)
     for i in range(low, high):
-        for j in range(m):
-            if boxed and _from_wall(x, walls, i, j) < reach:  # one that touched a step ago is no farther
-                _walls(x, v, f, inverse, area, walls, stiffness, damping, dt, i, j, anchors, out, give, press, pressed)
-            if x[2, i, j] - z >= offset and anchors[i, j, 0, 0] >= FREE:
-                continue
-            p = (x[0, i, j], x[1, i, j], x[2, i, j] - z)
-            u = (v[0, i, j], v[1, i, j], v[2, i, j] - speed)
-            h = dt * inverse[i, j]
-            ahead = (u[0] + h * f[0, i, j], u[1] + h * f[1, i, j], u[2] + h * f[2, i, j])
-            a, up = area[i, j], (0.0, 0.0, 1.0)
-            rim = depth > offset and (
-                i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, walls, i, j) < depth
-            )
-            rough, k_a, c_a = 0.0 if rim else mu, stiffness * a, damping * a
-            if _point(p, u, ahead, p[2], up, offset, k_a, c_a, rough, dt, anchors[i, j, 0], out, give):
-                work += give[2] * speed * dt
-                pressed[i] = True
-                put(press[i, j], 1.0, give)
         k = min(i + 1, n - 1)
+        if k > i:
+            _look_ahead(v, f, inverse, dt, k, later)
+        count = _points_of_row(y, lift, sleep, i, n, tool, origin, spacing, places, owners)
+        _look_up(tool, origin, spacing, places, count, found)
+        q = 0
         for j in range(m):
-            if sleep[i, j] > 0:
-                sleep[i, j] -= 1
-                continue
+            if t > np.uint64(CHUNK - POINTS):
+                done, used = _flush(w, whose, t, press, pressed, carry, anchors, speed, dt, high, out)
+                work, carried, t = work + done, carried or used, np.uint64(0)
+            a, ahead = np.uint64(4 * (i * m + j)), np.uint64(4 * (m * (i % 2) + j))
+            if boxed and _from_wall(x, walls, i, j) < reach:  # one that touched a step ago is no farther
+                for axis in range(2):
+                    middle = 0.5 * (walls[2 * axis] + walls[2 * axis + 1])
+                    inward = 1.0 if x[axis, i, j] < middle else -1.0
+                    near = inward * (x[axis, i, j] - (walls[2 * axis] if inward > 0.0 else walls[2 * axis + 1]))
+                    if (near < 0.0 or anchors[WALL + axis, 0, i, j] < FREE) and inverse[i, j] > 0.0:
+                        normal = (inward, 0.0, 0.0) if axis == 0 else (0.0, inward, 0.0)
+                        hard = (stiffness * area[i, j], damping * area[i, j], 0.0)
+                        p, u, e = load(y, a), load(rates, a), load(later, ahead)
+                        t = _add(w, whose, t, WALL + axis, i, j, p, u, e, near, normal, hard, anchors)
+            near = x[2, i, j] - z - offset
+            if near < 0.0 or anchors[PLATFORM, 0, i, j] < FREE:
+                rim = depth > offset and (
+                    i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, walls, i, j) < depth
+                )
+                p, u = add_scaled(1.0, load(y, a), lift), add_scaled(1.0, load(rates, a), moving)
+                e = add_scaled(1.0, load(later, ahead), moving)
+                hard = (stiffness * area[i, j], damping * area[i, j], 0.0 if rim else mu)
+                t = _add(w, whose, t, PLATFORM, i, j, p, u, e, near, (0.0, 0.0, 1.0), hard, anchors)
+            nearest = -1.0 if q == count or owners[1, q] != j else 1.0e3
             l = min(j + 1, m - 1)
-            nearest = 1.0e3
-            for q in range(4):
-                if (q >= 2 and k == i) or (q % 2 == 1 and l == j):
-                    continue
-                r = 0.0 if q < 2 else 0.5
-                s = 0.0 if q % 2 == 0 else 0.5
-                p = (
-                    _mean(x, 0, i, k, j, l, r, s),
-                    _mean(x, 1, i, k, j, l, r, s),
-                    _mean(x, 2, i, k, j, l, r, s) - z,
-                )
-                d, nx, ny, nz = sample(tool, origin, spacing, p[0], p[1], p[2])
-                nearest = min(nearest, d - offset)
-                if d >= offset and anchors[i, j, 1 + q, 0] >= FREE:
-                    continue
-                a = 0.25 * (dx[i] if q >= 2 else _dual(dx, i)) * (dy[j] if q % 2 == 1 else _dual(dy, j))
-                u = (
-                    _mean(v, 0, i, k, j, l, r, s),
-                    _mean(v, 1, i, k, j, l, r, s),
-                    _mean(v, 2, i, k, j, l, r, s) - speed,
-                )
-                ahead = (
-                    u[0] + dt * _push(f, inverse, 0, i, k, j, l, r, s),
-                    u[1] + dt * _push(f, inverse, 1, i, k, j, l, r, s),
-                    u[2] + dt * _push(f, inverse, 2, i, k, j, l, r, s),
-                )
-                if not _point(
-                    p, u, ahead, d, (nx, ny, nz), offset, stiffness * a, damping * a, mu, dt, anchors[i, j, 1 + q],
-                    out, give,
-                ):  # fmt: skip
-                    continue
-                work += give[2] * speed * dt
-                pressed[i] = True
-                put(press[i, j], (1 - r) * (1 - s), give)
-                if s > 0.0:
-                    put(press[i, l], (1 - r) * s, give)
-                if r == 0.0:
-                    continue
-                if k < high:
-                    pressed[k] = True
-                    put(press[k, j], r * (1 - s), give)
-                    put(press[k, l], r * s, give)
-                else:
-                    carried = True
-                    put(carry[j], r * (1 - s), give)
-                    put(carry[l], r * s, give)
+            b, c, d = np.uint64(4 * (i * m + l)), np.uint64(4 * (k * m + j)), np.uint64(4 * (k * m + l))
+            beside, below = np.uint64(4 * (m * (i % 2) + l)), np.uint64(4 * (m * (k % 2) + j))
+            across = np.uint64(4 * (m * (k % 2) + l))
+            while q < count and owners[1, q] == j:
+                kind, near = owners[0, q], found[4 * q] - offset
+                nearest = min(nearest, near)
+                if near < 0.0 or anchors[kind, 0, i, j] < FREE:
+                    size = 0.25 * (dx[i] if kind >= ALONG_ROWS else _dual(dx, i))
+                    size *= dy[j] if kind in (ALONG_COLUMNS, CENTRE) else _dual(dy, j)
+                    u = add_scaled(1.0, _middle(rates, kind, a, b, c, d), moving)
+                    e = add_scaled(1.0, _middle(later, kind, ahead, beside, below, across), moving)
+                    hard = (stiffness * size, damping * size, mu)
+                    p, normal = load(places, np.uint64(4 * q)), (found[4 * q + 1], found[4 * q + 2], found[4 * q + 3])
+                    t = _add(w, whose, t, kind, i, j, p, u, e, near, normal, hard, anchors)
+                q += 1
             if nearest > reach:
                 sleep[i, j] = min(LONGEST_SLEEP, int(nearest / reach) - 1)
+    if t > np.uint64(0):
+        done, used = _flush(w, whose, t, press, pressed, carry, anchors, speed, dt, high, out)
+        work, carried = work + done, carried or used
     return work, carried
 
 

@@ -8,7 +8,8 @@ from ddf.contact.bed import BED, bear, find_borne, lose
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
 from ddf.contact.self_contact import drop_near
 from ddf.contact.summit import add_pushes, summit_forces
-from ddf.contact.tool import PRESS, settle_row, tool_forces
+from ddf.contact.tool import settle_row, tool_forces
+from ddf.contact.tool_point import PRESS
 from ddf.dynamics import mirror
 from ddf.dynamics.work import SCRATCH_ROWS
 from ddf.elements.bending import bending_forces
@@ -259,19 +260,24 @@ def tool(model, state, work, member, row, b, dt, reach):
     out = work.sums[member]
     out[:] = 0.0
     law = (model.tool_offset, model.tool_stiffness, model.tool_damping, model.tool_friction)
+    size = 4 * sheet.rows * sheet.cols
+    y, rates = _packed(work.packed, sheet).reshape(size), _packed(work.rates, sheet).reshape(size)
+    parts = work.points
+    scratch = (
+        parts[0][member], parts[1][member], parts[2][member], parts[3][member], parts[4][member], parts[5][member],
+    )  # fmt: skip
     done, work.carried[b] = tool_forces(
-        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), scalars(model.inverse_mass, sheet),
+        vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet), y, rates,
+        scalars(model.inverse_mass, sheet),
         work.press.reshape((sheet.rows, sheet.cols, PRESS)), work.pressed, carry, scalars(model.area, sheet), dx, dy,
         model.tool, model.tool_origin, model.tool_spacing, law,
         (model.tool_boxed, model.tool_walls), (row[TOOL_Z], row[TOOL_SPEED]), reach, dt, state.tool_anchor, work.sleep,
-        block.low, block.high, out, work.give[member],
+        block.low, block.high, out, scratch,
     )  # fmt: skip
     if block.low == 0 and model.summits.shape[0] > 0:
         done += summit_forces(
-            _packed(work.packed, sheet).reshape(4 * sheet.rows * sheet.cols),
-            _packed(work.rates, sheet).reshape(4 * sheet.rows * sheet.cols),
-            vectors(state.f, sheet), scalars(model.inverse_mass, sheet), _centres(model, sheet), dx, dy, law,
-            (row[TOOL_Z], row[TOOL_SPEED]), dt, model.summits, state.spots, work.pushes, out, work.give[member],
+            y, rates, vectors(state.f, sheet), scalars(model.inverse_mass, sheet), _centres(model, sheet), dx, dy, law,
+            (row[TOOL_Z], row[TOOL_SPEED]), dt, model.summits, state.spots, work.pushes, out, scratch[0],
         )  # fmt: skip
     state.springs[b, TOOL_NORMAL_SPRING] = out[0]
     state.springs[b, TOOL_TANGENTIAL_SPRING] = out[1]

@@ -9,7 +9,8 @@ import numpy as np
 from ddf.contact.bed import BED
 from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.summit import PUSH
-from ddf.contact.tool import PRESS
+from ddf.contact.tool import point_scratch
+from ddf.contact.tool_point import PRESS
 from ddf.elements import bending, shear, squeeze
 from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.tension import LINES, line_scratch
@@ -33,10 +34,10 @@ class Work(NamedTuple):
     carry: np.ndarray  # (blocks, widest + 2, PRESS) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
     shell_carry: np.ndarray  # (6, blocks, widest) row of the next block, from a shell ply's cells: forces, pulls
-    press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool`
+    press: np.ndarray  # (PRESS N,) of the tool's sheet, see `contact.tool_point`
     pressed: np.ndarray  # (n,) bool: rows of press in use
     pushes: np.ndarray  # (k, PUSH) what the tool's summits do, see `contact.summit`
-    give: np.ndarray  # (members, PRESS)
+    points: tuple[np.ndarray, ...]  # from `contact.tool.point_scratch`
     sleep: np.ndarray  # (n, m) int16: steps in which a cell need not look at the tool
     rest: np.ndarray  # (P,) int8: steps that a slave node rests
     idle: np.ndarray  # (pairs,) bool: pairs of self-contact in which no node is followed in this batch of steps
@@ -71,7 +72,7 @@ def make_work(model: Model, members: int) -> Work:
         chunks=chunk_scratch(members), sums=np.zeros((members, 4)), carry=np.zeros((model.blocks.size, widest, PRESS)),
         shell_carry=np.zeros((6, model.blocks.size, widest)),
         carried=np.zeros(model.blocks.size, bool), press=np.zeros(PRESS * int(bottom["rows"] * bottom["cols"])),
-        pressed=np.zeros(int(bottom["rows"]), bool), give=np.zeros((members, PRESS)),
+        pressed=np.zeros(int(bottom["rows"]), bool), points=point_scratch(members, int(bottom["cols"])),
         pushes=np.full((model.summits.shape[0], PUSH), -1.0),
         sleep=np.zeros((int(bottom["rows"]), int(bottom["cols"])), np.int16),
         rest=np.zeros(model.exposed.size, np.int8), idle=np.zeros(model.pairs.size, bool),

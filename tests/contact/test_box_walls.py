@@ -5,7 +5,8 @@ import pytest
 
 from ddf.build import build_scene
 from ddf.case import case_from_dict
-from ddf.contact.tool import FREE, WALL
+from ddf.contact.tool import WALL
+from ddf.contact.tool_point import FREE
 from ddf.model import sheet_vectors
 from ddf.monitors.energy import energies
 from ddf.simulate import Simulation
@@ -42,9 +43,9 @@ def test_sheets_lie_on_the_walls_and_not_beyond(pressed):
     beyond = np.maximum(np.abs(x[0]) - 110.0, np.abs(x[1]) - 100.0)
     assert x[2].min() < -40.0  # drawn deep into the box
     assert 0.0 < beyond.max() < 0.1
-    touching = pressed.state.tool_anchor[..., WALL:, 0] < FREE
-    assert touching.any(axis=(0, 1)).all()  # walls of both directions
-    assert not touching[0].any()  # held nodes are not asked
+    touching = pressed.state.tool_anchor[WALL:, 0] < FREE
+    assert touching.any(axis=(1, 2)).all()  # walls of both directions
+    assert not touching[:, 0].any()  # held nodes are not asked
 
 
 def test_walls_do_no_work(pressed):

@@ -8,7 +8,7 @@ from touching import packed
 from ddf.build.summits import first_spots, summit_records
 from ddf.contact.patch import patch_centres
 from ddf.contact.summit import PUSH, SPOT, add_pushes, summit_forces
-from ddf.contact.tool import FREE, PRESS
+from ddf.contact.tool_point import CHUNK, FREE, POINT_ROWS, PRESS
 from ddf.mesh.diaphragm import mesh_diaphragm
 from ddf.mesh.summits import angle_defects, summits
 from ddf.mesh.tool import build_tool
@@ -43,7 +43,7 @@ class Spike:
             self.work = summit_forces(
                 packed(x).reshape(-1), packed(v, 0.0).reshape(-1), zero, np.zeros((NODES, NODES)), self.centre,
                 self.cells, self.cells, (0.75, STIFFNESS, damping, 0.3), (0.0, speed), 1e-6, self.summits, self.spots,
-                pushes, self.out, np.zeros(PRESS),
+                pushes, self.out, np.zeros(POINT_ROWS * CHUNK),
             )  # fmt: skip
         press, pressed = np.zeros((NODES, NODES, PRESS)), np.zeros(NODES, bool)
         for low, high in ((0, NODES),) if seam is None else ((0, seam), (seam, NODES)):

@@ -6,7 +6,8 @@ import numpy as np
 
 from ddf.contact.layers import NOWHERE, UNKNOWN, chunk_scratch, layer_forces, touched
 from ddf.contact.patch import patch_centres
-from ddf.contact.tool import FREE, POINTS, PRESS, tool_forces
+from ddf.contact.tool import POINTS, point_scratch, tool_forces
+from ddf.contact.tool_point import FREE, PRESS
 from ddf.model import PAIR
 
 
@@ -100,7 +101,7 @@ class Tool:
         self.values = np.ascontiguousarray(np.stack([d, *gradient], axis=-1).astype(np.float32))
         self.law = (0.75, stiffness, damping, friction)
         self.dx, self.dy = (np.asarray(a, dtype=float) for a in cells)
-        self.anchors = np.full((self.dx.size + 1, self.dy.size + 1, POINTS, 3), FREE)
+        self.anchors = np.full((POINTS, 3, self.dx.size + 1, self.dy.size + 1), FREE)
         x, y = (0.5 * (np.pad(d, (1, 0)) + np.pad(d, (0, 1))) for d in (self.dx, self.dy))
         self.area = x[:, None] * y[None, :]
         self.out, self.work = np.zeros(4), 0.0
@@ -113,13 +114,13 @@ class Tool:
         v = np.zeros_like(x) if v is None else v
         self.out, self.work = np.zeros(4), 0.0
         self.press, pressed = np.zeros((n, m, PRESS)), np.zeros(n, bool)
-        sleep = np.zeros((n, m), np.int16)
+        sleep, scratch = np.zeros((n, m), np.int16), tuple(part[0] for part in point_scratch(1, m))
         for low, high in ((0, n),) if seam is None else ((0, seam), (seam, n)):
             carry = np.zeros((m + 2, PRESS))
             work, _ = tool_forces(
-                x, v, others, inverse, self.press, pressed, carry, self.area, self.dx, self.dy,
-                self.values, self.origin, self.spacing, self.law, (False, np.zeros(4)), (z, speed), 1e6, dt,
-                self.anchors, sleep, low, high, self.out, np.zeros(PRESS),
+                x, v, others, packed(x).reshape(-1), packed(v, 0.0).reshape(-1), inverse, self.press, pressed, carry,
+                self.area, self.dx, self.dy, self.values, self.origin, self.spacing, self.law,
+                (False, np.zeros(4)), (z, speed), 1e6, dt, self.anchors, sleep, low, high, self.out, scratch,
             )  # fmt: skip
             self.work += work
             if high < n:
