@@ -43,10 +43,11 @@ def _moment_row(xm, x0, xp, lo, hi, left, own, right, width, rigidity, mx, my):
     s = 2.0 / (lo + hi)
     p, q = (s / lo, s / hi) if lo > 0.0 and hi > 0.0 else (0.0, 0.0)
     a = 0.5 * rigidity * (lo + hi)
+    my[1], my[m] = 0.0, 0.0
+    for j in range(1, m - 1):
+        my[j + 1] = left[j + 1] * x0[j - 1] + own[j + 1] * x0[j] + right[j + 1] * x0[j + 1]
     for j in range(m):
-        behind, before = max(j - 1, 0), min(j + 1, m - 1)
-        cx = p * (xm[j] - x0[j]) + q * (xp[j] - x0[j])
-        cy = left[j + 1] * x0[behind] + own[j + 1] * x0[j] + right[j + 1] * x0[before]
+        cx, cy = p * (xm[j] - x0[j]) + q * (xp[j] - x0[j]), my[j + 1]
         mx[j + 1] = a * width[j] * (cx + 0.5 * cy)
         my[j + 1] = a * width[j] * (cy + 0.5 * cx)
 
