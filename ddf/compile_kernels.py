@@ -53,7 +53,7 @@ def _compile_phases(contact: bool) -> None:
 
     from ddf.build import build_scene
     from ddf.case import case_from_dict
-    from ddf.dynamics import mirror, phases
+    from ddf.dynamics import contacts, mirror, phases
     from ddf.output.raster import view_from_above
     from ddf.postprocess import measure
     from ddf.simulate import Simulation
@@ -63,11 +63,11 @@ def _compile_phases(contact: bool) -> None:
     vector = float64[::1]
     if contact:
         phases.pull_family.compile((model, state, work, int64, int64, int64, int64))
-        phases.layers.compile((model, state, work, int64, int64, float64, float64))
+        contacts.layers.compile((model, state, work, int64, int64, float64, float64))
         phases.leave.compile((model, state, work, vector, int64, float64, int64, int64))
-        phases.tool.compile((model, state, work, int64, vector, int64, float64, float64))
+        contacts.tool.compile((model, state, work, int64, vector, int64, float64, float64))
         phases.drift.compile((model, state, work, vector, int64))
-        phases.collect.compile((model, state, work, int64))
+        contacts.collect.compile((model, state, work, int64))
         mirror.fold_back.compile((model, state, work, float64, int64))
         mirror.follow.compile((model, state, work, int64))
         mirror.follow_tension.compile((model, state, int64))

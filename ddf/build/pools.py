@@ -64,20 +64,33 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
 
 
 def ply_cover(cell: FloatArray) -> FloatArray:
-    """Depth of a ply's nodes inside its edges, in cells, less one where the edge is no straight line of the grid.
+    """How far nodes of a ply lie inside of where contact ends, in cells or the halves of them beyond the grid's border.
 
     cell (n, m) areas. Contact takes what is interpolated of it between 0 and 1 (`contact.layers`). Along a straight
-    edge the smooth surface goes on from the patch beside it to the edge, and contact fades over the last cell. Along
-    one that runs across the grid in steps that patch changes, and the surface jumps: contact there gave a stack of
-    four plies 5 % of its work out of nothing. There it ends a cell from the edge, and is whole from two cells on.
+    edge the smooth surface goes on from the patch beside it: as far as the grid does, to the edge, where contact
+    fades over the last cell; at the grid's border half a cell beyond it: fabric is met in full up to its edge.
+    Along an edge that runs across the grid in steps that patch changes, and the surface jumps: contact there gave a
+    stack of four plies 5 % of its work out of nothing. There it ends a cell from the edge, and is whole from two cells
+    on.
     """
-    inside = edge_cover(cell) > 0.0
-    depth: FloatArray = distance_transform_cdt(np.pad(inside, 1), metric="chessboard")[1:-1, 1:-1].astype(np.float64)
-    exists = corner_sum((cell > 0.0)[:-1, :-1].astype(np.float64)) > 0.0
+    n, m = cell.shape
+    whole = (cell > 0.0)[:-1, :-1]
+    exists = corner_sum(whole.astype(np.float64)) > 0.0
     around = sliding_window_view(np.pad(exists, PATCH_REACH), (2 * PATCH_REACH + 1,) * 2)
     product = around.any(axis=3, keepdims=True) & around.any(axis=2, keepdims=True)
     straight: NDArray[np.bool_] = (around == product).all(axis=(2, 3))
-    return np.where(straight, depth, depth - 1.0)
+    i, j = np.arange(n)[:, None], np.arange(m)[None, :]
+    to_border = np.minimum(np.minimum(i, n - 1 - i), np.minimum(j, m - 1 - j))
+    beyond = min(n, m)  # fabric that goes on over the border
+    depth = _depth(np.pad(whole, beyond, mode="edge"))[beyond:-beyond, beyond:-beyond]
+    return np.where(straight, np.minimum(depth, 2.0 * to_border + 1.0), _depth(whole) - 1.0)
+
+
+def _depth(cells: NDArray[np.bool_]) -> FloatArray:
+    """Of each node the cells to the nearest that is not amid four of the fabric's, (n, m) from (n-1, m-1)."""
+    inside = edge_cover(np.pad(cells, ((0, 1), (0, 1))).astype(np.float64)) > 0.0
+    depth: FloatArray = distance_transform_cdt(np.pad(inside, 1), metric="chessboard")[1:-1, 1:-1].astype(np.float64)
+    return depth
 
 
 def _lattice(ply: PlyMesh) -> dict[str, FloatArray]:

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from ddf.dynamics import mirror, phases
+from ddf.dynamics import contacts, mirror, phases
 from ddf.dynamics.team import barrier, draw
 from ddf.elements.squeeze import SHARE
 from ddf.jit import FAST
@@ -50,7 +50,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     blocks, half = model.blocks.shape[0], model.mirror >= 0
     tool_blocks, tool_first = 0, 0
     if model.tool_sheet >= 0:
-        tool_first, tool_blocks = phases.blocks_of(model, model.tool_sheet)
+        tool_first, tool_blocks = contacts.blocks_of(model, model.tool_sheet)
     # a ply that meets the tool itself is kicked before its fibres are pulled; a diaphragm meanwhile
     first_turn = -2 if tool_blocks > 0 and model.sheets[model.tool_sheet].kind == PLY else 0
     base = 0
@@ -77,15 +77,15 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
             t = draw(sync, base)
             while t < tasks:
                 if phase == PACK:
-                    phases.pack(model, state, work, t)
+                    contacts.pack(model, state, work, t)
                 elif phase in (BEGIN, FOLLOW):
                     mirror.follow(model, state, work, t)
                     mirror.follow_tension(model, state, t)
                 elif phase == FORCES:
                     phases.internal(model, state, work, row, t, work.scratch[member])
-                    phases.layers(model, state, work, member, t, model.dt, reach)
+                    contacts.layers(model, state, work, member, t, model.dt, reach)
                 elif phase == COLLECT:
-                    phases.collect(model, state, work, t)
+                    contacts.collect(model, state, work, t)
                     if not half:
                         phases.leave(model, state, work, row, t, reach, member, settle)
                 elif phase == FOLD_BACK:
@@ -99,7 +99,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
                 elif t >= also:
                     phases.pull_family(model, state, work, member, family, turn // 2, t - also)
                 elif turn == first_turn:
-                    phases.tool(model, state, work, member, row, tool_first + t, model.dt, reach)
+                    contacts.tool(model, state, work, member, row, tool_first + t, model.dt, reach)
                 else:
                     phases.leave(model, state, work, row, tool_first + t, reach, member, settle)
                 t = draw(sync, base)
