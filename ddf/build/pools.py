@@ -21,6 +21,8 @@ FloatArray = NDArray[np.float64]
 BLOCKS_A_SHEET = 12
 PATCH_REACH = 3
 """An edge is straight for nodes around which it is so far; patches of the smooth surface are chosen two away."""
+MISSING = -3.0
+"""Share in contact of nodes at an edge across the grid."""
 LEAST_NODE = 0.25
 """Least share of a cell whose mass a node of a ply carries. A cut leaves slivers, and a sheet that lies on one
 pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
@@ -64,14 +66,14 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
 
 
 def ply_cover(cell: FloatArray) -> FloatArray:
-    """How far nodes of a ply lie inside of where contact ends, in cells or the halves of them beyond the grid's border.
+    """A ply's nodes' share in contact: it takes what is interpolated of it between 0 and 1 (`contact.layers`).
 
-    cell (n, m) areas. Contact takes what is interpolated of it between 0 and 1 (`contact.layers`). Along a straight
-    edge the smooth surface goes on from the patch beside it: as far as the grid does, to the edge, where contact
-    fades over the last cell; at the grid's border half a cell beyond it: fabric is met in full up to its edge.
-    Along an edge that runs across the grid in steps that patch changes, and the surface jumps: contact there gave a
-    stack of four plies 5 % of its work out of nothing. There it ends a cell from the edge, and is whole from two cells
-    on.
+    cell (n, m) areas. Along a straight edge the smooth surface goes on from the patch beside it: as far as the grid
+    does, to the edge, where contact fades over the last cell; at the grid's border half a cell beyond it, so that
+    fabric is met in full up to its edge. Along an edge that runs across the grid in steps that patch changes, and the
+    surface jumps: contact there gave a stack of four plies 5 % of its work out of nothing. There contact ends where a
+    node is nearest that is not amid four cells: MISSING is the largest number for those with which, whatever their
+    pattern, none is left there (in the corner between one and three whole ones, 3 + MISSING = 0).
     """
     n, m = cell.shape
     whole = (cell > 0.0)[:-1, :-1]
@@ -83,7 +85,8 @@ def ply_cover(cell: FloatArray) -> FloatArray:
     to_border = np.minimum(np.minimum(i, n - 1 - i), np.minimum(j, m - 1 - j))
     beyond = min(n, m)  # fabric that goes on over the border
     depth = _depth(np.pad(whole, beyond, mode="edge"))[beyond:-beyond, beyond:-beyond]
-    return np.where(straight, np.minimum(depth, 2.0 * to_border + 1.0), _depth(whole) - 1.0)
+    inside = np.where(_depth(whole) > 0.0, 1.0, MISSING)
+    return np.where(straight, np.minimum(depth, 2.0 * to_border + 1.0), inside)
 
 
 def _depth(cells: NDArray[np.bool_]) -> FloatArray:

@@ -56,7 +56,7 @@ def test_contact_is_whole_to_the_borders_of_the_grid_and_ends_half_a_cell_beyond
         assert at_place(cover, centre, 19.0 - u, 3.3) == pytest.approx(expected, abs=1e-12)
         assert at_place(cover, centre, 3.7, u) == pytest.approx(expected, abs=1e-12)
     assert cover[1, 1:-1].min() >= 1.0
-    assert cover[8, 7] == (-1.0 if hole else 15.0)
+    assert cover[8, 7] == (-3.0 if hole else 15.0)
 
 
 def test_contact_fades_over_the_last_cell_along_straight_edges_within_the_grid():
