@@ -68,32 +68,20 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
 def ply_cover(cell: FloatArray) -> FloatArray:
     """A ply's nodes' share in contact: it takes what is interpolated of it between 0 and 1 (`contact.layers`).
 
-    cell (n, m) areas. Along a straight edge the smooth surface goes on from the patch beside it: as far as the grid
-    does, to the edge, where contact fades over the last cell; at the grid's border half a cell beyond it, so that
-    fabric is met in full up to its edge. Along an edge that runs across the grid in steps that patch changes, and the
-    surface jumps: contact there gave a stack of four plies 5 % of its work out of nothing. There contact ends where a
-    node is nearest that is not amid four cells: MISSING is the largest number for those with which, whatever their
-    pattern, none is left there (in the corner between one and three whole ones, 3 + MISSING = 0).
+    cell (n, m) areas. Along a straight edge the smooth surface goes on from the patch beside it to the edge, and
+    contact fades over the last cell: the depth of nodes inside the edge, in cells. Along an edge that runs across the
+    grid in steps that patch changes, and the surface jumps: contact there gave a stack of four plies 5 % of its work
+    out of nothing. There contact ends where a node is nearest that is not amid four cells: MISSING is the largest
+    number for those with which, whatever their pattern, none is left there (in the corner between one and three whole
+    ones, 3 + MISSING = 0).
     """
-    n, m = cell.shape
-    whole = (cell > 0.0)[:-1, :-1]
-    exists = corner_sum(whole.astype(np.float64)) > 0.0
+    inside = edge_cover(cell) > 0.0
+    depth: FloatArray = distance_transform_cdt(np.pad(inside, 1), metric="chessboard")[1:-1, 1:-1].astype(np.float64)
+    exists = corner_sum((cell > 0.0)[:-1, :-1].astype(np.float64)) > 0.0
     around = sliding_window_view(np.pad(exists, PATCH_REACH), (2 * PATCH_REACH + 1,) * 2)
     product = around.any(axis=3, keepdims=True) & around.any(axis=2, keepdims=True)
     straight: NDArray[np.bool_] = (around == product).all(axis=(2, 3))
-    i, j = np.arange(n)[:, None], np.arange(m)[None, :]
-    to_border = np.minimum(np.minimum(i, n - 1 - i), np.minimum(j, m - 1 - j))
-    beyond = min(n, m)  # fabric that goes on over the border
-    depth = _depth(np.pad(whole, beyond, mode="edge"))[beyond:-beyond, beyond:-beyond]
-    inside = np.where(_depth(whole) > 0.0, 1.0, MISSING)
-    return np.where(straight, np.minimum(depth, 2.0 * to_border + 1.0), inside)
-
-
-def _depth(cells: NDArray[np.bool_]) -> FloatArray:
-    """Of each node the cells to the nearest that is not amid four of the fabric's, (n, m) from (n-1, m-1)."""
-    inside = edge_cover(np.pad(cells, ((0, 1), (0, 1))).astype(np.float64)) > 0.0
-    depth: FloatArray = distance_transform_cdt(np.pad(inside, 1), metric="chessboard")[1:-1, 1:-1].astype(np.float64)
-    return depth
+    return np.where(straight, depth, np.where(inside, 1.0, MISSING))
 
 
 def _lattice(ply: PlyMesh) -> dict[str, FloatArray]:

@@ -24,8 +24,7 @@ forces lie a gap apart and every contact would be a couple. Slip is a history an
 anchor: in folds as tight as the contact distance places move where nothing slips. Nor are its components s^a kept: a
 master that stretched took what slip was held along, and gave the springs energy that no force had worked for.
 
-A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge, or the
-first half cell beyond it (`build.pools.ply_cover`), U
+A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge U
 fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the node off the edge): the corner of one
 ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
 30 m/s (seen). One that is far away rests for as many
@@ -273,10 +272,9 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
         place[2, node] = gap
         place[3, node] = 0.0
         place[4, node] = 0.0
-        on_grid = u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
-        touches = gap < 0.0 and gap >= deepest and (on_grid or w[COVER + t] < WHOLE_COVER)
+        touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
         touches = touches and abs(w[DU + t]) < FARTHEST and abs(w[DV + t]) < FARTHEST
-        i, j = min(max(int(u), 0), cell.shape[0] - 2), min(max(int(v), 0), cell.shape[1] - 2)
+        i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
         if touches and w[COVER + t] > 0.0 and cell[np.uint64(i), np.uint64(j)] > 0.0:
             touching += 1
             continue

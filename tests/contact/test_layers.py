@@ -10,20 +10,14 @@ from ddf.contact.friction import TANGENTIAL
 
 @pytest.mark.parametrize(
     ("sign", "deeper", "edge"),
-    [(1.0, 0.0, ""), (-1.0, 0.0, ""), (1.0, 0.3, ""), (1.0, 0.6, ""), (1.0, 0.1, "inside"), (1.0, 0.1, "beyond")],
+    [(1.0, 0.0, False), (-1.0, 0.0, False), (1.0, 0.3, False), (1.0, 0.6, False), (1.0, 0.1, True)],
 )
 def test_force_is_the_gradient_of_the_spring_energy(sign, deeper, edge):
     xs, xm = t.curved_scene(np.random.default_rng(0))
     xs[2] -= deeper
     if sign < 0:
         xs[2] -= 1.9
-    cover = np.ones((6, 7))
-    if edge == "inside":
-        cover *= np.clip(np.arange(6.0)[:, None] / 4.0, 0.0, 1.0)
-    elif edge == "beyond":  # the first row lies beyond the grid's border
-        cover *= 2.0 * np.arange(6.0)[:, None] + 1.0
-        xs[2] += 0.01 * ((xs[0] - 3.5) ** 2 - xs[0] ** 2)
-        xs[0] -= 3.5
+    cover = np.clip(np.arange(6.0)[:, None] / 4.0, 0.0, 1.0) * np.ones((6, 7)) if edge else np.ones((6, 7))
     start = t.Layers(xs, xm, 2.5, t.make_pair(sign=sign))
     start.cover = cover
     start.settle(xs, xm, 30)
@@ -37,10 +31,8 @@ def test_force_is_the_gradient_of_the_spring_energy(sign, deeper, edge):
     fs, fm = start.forces(xs, xm)
     scale = np.abs(fs).max()
     assert (np.abs(fs[2]) > 0).sum() >= 8
-    assert (np.abs(fs[2, 0]) > 0).any()
-    assert (start.place[0, 0].max() < 0.0) == (edge == "beyond")
-    # the push off an edge is taken to the first order in height times curvature, here 1 mm by up to 0.07 / mm
-    bound = 0.07 * np.abs(fs[0]).max() / scale if edge else 1e-6
+    # the push off an edge is taken to the first order in the height above a curved surface
+    bound = 2e-3 if edge else 1e-6
     assert np.abs(fs + gradient(lambda y: energy(y, xm), xs, 1e-5)).max() < bound * scale
     assert np.abs(fm + gradient(lambda y: energy(xs, y), xm, 1e-5)).max() < bound * scale
 
