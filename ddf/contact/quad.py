@@ -9,6 +9,7 @@ from __future__ import annotations
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
+from numba.core.errors import TypingError
 from numba.extending import intrinsic, models, register_model
 
 VECTOR = ir.VectorType(ir.DoubleType(), 4)
@@ -29,6 +30,12 @@ class _QuadModel(models.PrimitiveModel):
         super().__init__(manager, kind, VECTOR)
 
 
+def _flat(array):
+    """Refuse arrays that do not lie in memory as one row after the other: they would be read at wrong places."""
+    if array.layout != "C":
+        raise TypingError(f"contiguous array wanted, not {array}")
+
+
 def _address(context, builder, kind, array, index, vector=VECTOR):
     """Pointer to four numbers of a contiguous array seen as flat."""
     data = context.make_array(kind)(context, builder, array).data
@@ -45,6 +52,7 @@ def _splat(builder, number):
 @intrinsic
 def load(typing, array, index):
     """Four numbers from place `index` (uint64) on of a contiguous array seen as flat, float64 or float32."""
+    _flat(array)
     single = array.dtype == types.float32
 
     def build(context, builder, signature, args):
@@ -58,6 +66,7 @@ def load(typing, array, index):
 @intrinsic
 def expect(typing, array, index):
     """Have the processor fetch what lies at place `index` (uint64) of a contiguous array seen as flat."""
+    _flat(array)
 
     def build(context, builder, signature, args):
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
@@ -74,6 +83,7 @@ def expect(typing, array, index):
 @intrinsic
 def store(typing, array, index, value):
     """Put the value to place `index` (uint64) and the three after it of a contiguous float64 array seen as flat."""
+    _flat(array)
 
     def build(context, builder, signature, args):
         builder.store(args[2], _address(context, builder, signature.args[0], *args[:2]), align=8)

@@ -38,6 +38,10 @@ class DistanceField:
     spacing: float
     """Distance between grid points [mm], the same along all axes."""
 
+    def __post_init__(self) -> None:
+        """Lay the values out as the lookup reads them."""
+        object.__setattr__(self, "values", np.ascontiguousarray(self.values))
+
     def distance(self, points: FloatArray) -> FloatArray:
         """Distance [mm] from the tool, (k,), of points (k, 3) [mm]; OUTSIDE_MM outside the grid."""
         return self._samples(points)[:, 0]

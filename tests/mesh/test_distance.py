@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from numba.core.errors import TypingError
 
 from ddf.errors import MeshError
 from ddf.mesh.analytic import primitive_distance
@@ -141,3 +142,13 @@ def test_spacing_must_fit_the_band():
     mesh = build_tool("box", height_mm=20.0, fillet_mm=0.0)
     with pytest.raises(MeshError, match="spacing_mm"):
         distance_field(mesh, 5.0, 8.0)
+
+
+def test_values_are_read_rightly_however_they_lie_in_memory():
+    rng = np.random.default_rng(0)
+    values, points = rng.normal(size=(6, 5, 4, 4)).astype(np.float32), rng.uniform(0.0, 3.0, (20, 3))
+    row_by_row = DistanceField(values, np.zeros(3), 1.0)
+    column_by_column = DistanceField(np.asfortranarray(values), np.zeros(3), 1.0)
+    assert np.array_equal(row_by_row.distance(points), column_by_column.distance(points))
+    with pytest.raises(TypingError, match="contiguous"):
+        sample(np.asfortranarray(values), np.zeros(3), 1.0, 1.5, 1.5, 1.5)
