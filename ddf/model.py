@@ -124,6 +124,15 @@ PAIR = np.dtype(
     align=True,
 )
 
+RIM = np.dtype(
+    [
+        ("node", np.int64),  # of the rim, and one of those that it goes on from, with its weight: see `contact.rim`
+        ("parent", np.int64),
+        ("weight", np.float64),
+    ],
+    align=True,
+)
+
 
 class Model(NamedTuple):
     """All that does not change during a run."""
@@ -147,8 +156,12 @@ class Model(NamedTuple):
     tangents: np.ndarray  # (laws, intervals): h G [N/mm] over the shear angle, 0 .. `shear_law.TANGENT_SPAN`
     ogden: np.ndarray  # (pairs, 2): mu [MPa], alpha
     exposed: np.ndarray  # (P,) bool: slave nodes a pair has to follow
-    cover: np.ndarray  # (N,) share of contact stiffness that a master gives at a node: 0 on a ply's edges
+    cover: np.ndarray  # (N,) share of contact stiffness that a master gives at a node, see `build.rim.ply_cover`
     centre: np.ndarray  # (2 N,) int32: centre of the contact patch around a node
+    rim: np.ndarray  # (R,) RIM, by nodes
+    rim_first: np.ndarray  # (blocks + 1,) first of each block's rim nodes
+    rim_parents: np.ndarray  # (R,) the same RIM, by parents
+    parent_first: np.ndarray  # (blocks + 1,) first of those whose parents each block has
     tool: np.ndarray  # (nx, ny, nz, 4) float32 signed distance and gradient
     tool_origin: np.ndarray  # (3,)
     tool_spacing: float

@@ -15,7 +15,9 @@ from scipy.spatial import cKDTree
 
 from ddf.build.pools import row_blocks
 from ddf.build.rest import state_at_rest
+from ddf.build.rim import rim_lists, rim_nodes
 from ddf.contact.patch import patch_centres
+from ddf.contact.rim import sheet_rim
 from ddf.contact.self_contact import CELLS
 from ddf.half import Half
 from ddf.mesh.distance import DistanceField
@@ -121,7 +123,8 @@ def _half(scene: Scene, axis: int) -> Scene:
         sheets=sheets, blocks=blocks, pairs=pairs, **pools, **sizes, exposed=exposed,
         cover=np.concatenate([g.cut(whole.cover) for g in grids]),
         weight=np.concatenate([g.cut_fours(whole.weight) for g in grids]),
-        centre=np.concatenate([patch_centres(g.kept).ravel() for g in grids]),
+        centre=np.concatenate([patch_centres(g.kept | rim_nodes(g.rim, g.shape)).ravel() for g in grids]),
+        **rim_lists([g.rim for g in grids], sheets, blocks),
         line_mass=np.concatenate([g.line_mass() for g in grids]),
         away=np.concatenate([g.away(whole).ravel() for g in grids]), mirror=axis,
         **_mirror_lists(grids, sheets, blocks),
@@ -155,8 +158,11 @@ class _Grid:
         )  # families are each other's images
         self.cell = max(cells)  # at the plane
         kept = exists & ((across >= -STRIP * self.cell) | self.swapped)
-        self.rows, self.cols = (_extent(kept.any(axis=1 - a)) for a in (0, 1))
+        rim = self._rim(kept)
+        there = kept | rim_nodes(rim, kept.shape)
+        self.rows, self.cols = (_extent(there.any(axis=1 - a)) for a in (0, 1))
         self.shape = (self.rows.stop - self.rows.start, self.cols.stop - self.cols.start)
+        self.rim = self._moved(rim, kept.shape[1])
         self.size = self.shape[0] * self.shape[1]
         self.kept = kept[self.rows, self.cols]
         self.x = np.ascontiguousarray(flat[:, self.rows, self.cols])
@@ -171,6 +177,20 @@ class _Grid:
         points = self.x[:2].reshape(2, -1).T
         images = points[ghosts] * np.where(np.arange(2) == axis, -1.0, 1.0)
         self.ghosts = np.stack([ghosts, real[cKDTree(points[real]).query(images)[1]]], axis=1)
+
+    def _rim(self, kept: BoolArray) -> np.ndarray:
+        """RIM records of the whole's sheet, numbers in it, all of whose parents are kept."""
+        rim = sheet_rim(self.whole, self.k)
+        lost = np.unique(rim["node"][~kept.ravel()[rim["parent"]]])
+        return rim[~np.isin(rim["node"], lost)]
+
+    def _moved(self, rim: np.ndarray, cols: int) -> np.ndarray:
+        """RIM records with numbers in the half's sheet, from those in the whole's."""
+        moved = rim.copy()
+        for name in ("node", "parent"):
+            i, j = np.divmod(rim[name], cols)
+            moved[name] = (i - self.rows.start) * self.shape[1] + j - self.cols.start
+        return moved
 
     def cut(self, pool: NDArray) -> NDArray:
         """What the half has of a pool of one number a node, flat."""

@@ -6,12 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_cdt
 
+from ddf.build.rim import ply_cover, rim_nodes
 from ddf.build.stack import Stack
-from ddf.contact.patch import edge_cover, patch_centres
+from ddf.contact.patch import patch_centres
 from ddf.elements.bending import tangent_weights
 from ddf.mesh.ply import PlyMesh
 from ddf.model import BLOCK, DIAPHRAGM
@@ -19,17 +18,13 @@ from ddf.model import BLOCK, DIAPHRAGM
 FloatArray = NDArray[np.float64]
 
 BLOCKS_A_SHEET = 12
-PATCH_REACH = 3
-"""An edge is straight for nodes around which it is so far; patches of the smooth surface are chosen two away."""
-MISSING = -3.0
-"""Share in contact of nodes at an edge across the grid."""
 LEAST_NODE = 0.25
 """Least share of a cell whose mass a node of a ply carries. A cut leaves slivers, and a sheet that lies on one
 pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
 
 
-def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[str, Any]:
-    """Node pools of the model: masses, areas, bars, cells, triples."""
+def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float], rims: list[np.ndarray]) -> dict[str, Any]:
+    """Node pools of the model: masses, areas, bars, cells, triples; rims: RIM records of each sheet."""
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
     centres, weights = [], []
@@ -40,8 +35,8 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
         if s["kind"] != DIAPHRAGM:
             ply = stack.plies[k - 1]
             values |= _lattice(ply)
-            values["cover"] = ply_cover(values["cell"])
-            held, exists = np.zeros((n, m), bool), ply.active
+            values["cover"] = ply_cover(ply)
+            held, exists = np.zeros((n, m), bool), ply.active | rim_nodes(rims[k], (n, m))
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
@@ -63,25 +58,6 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float]) -> dict[st
     pools["centre"] = np.concatenate(centres)
     pools["weight"] = np.concatenate(weights)
     return pools
-
-
-def ply_cover(cell: FloatArray) -> FloatArray:
-    """A ply's nodes' share in contact: it takes what is interpolated of it between 0 and 1 (`contact.layers`).
-
-    cell (n, m) areas. Along a straight edge the smooth surface goes on from the patch beside it to the edge, and
-    contact fades over the last cell: the depth of nodes inside the edge, in cells. Along an edge that runs across the
-    grid in steps that patch changes, and the surface jumps: contact there gave a stack of four plies 5 % of its work
-    out of nothing. There contact ends where a node is nearest that is not amid four cells: MISSING is the largest
-    number for those with which, whatever their pattern, none is left there (in the corner between one and three whole
-    ones, 3 + MISSING = 0).
-    """
-    inside = edge_cover(cell) > 0.0
-    depth: FloatArray = distance_transform_cdt(np.pad(inside, 1), metric="chessboard")[1:-1, 1:-1].astype(np.float64)
-    exists = corner_sum((cell > 0.0)[:-1, :-1].astype(np.float64)) > 0.0
-    around = sliding_window_view(np.pad(exists, PATCH_REACH), (2 * PATCH_REACH + 1,) * 2)
-    product = around.any(axis=3, keepdims=True) & around.any(axis=2, keepdims=True)
-    straight: NDArray[np.bool_] = (around == product).all(axis=(2, 3))
-    return np.where(straight, depth, np.where(inside, 1.0, MISSING))
 
 
 def _lattice(ply: PlyMesh) -> dict[str, FloatArray]:

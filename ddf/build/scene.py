@@ -13,6 +13,7 @@ from ddf.build.loads import load_path
 from ddf.build.pairs import contact_pairs
 from ddf.build.pools import node_pools, row_blocks
 from ddf.build.rest import state_at_rest
+from ddf.build.rim import no_rims, rim_entries, rim_lists
 from ddf.build.sheets import sheet_records
 from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nominal_height
 from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
@@ -52,7 +53,9 @@ def _whole_scene(case: Case, even: bool) -> Scene:
     limit = step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s
     sheets["bed_stiffness"] = [min(case.solver.tool_contact_stiffness_N_mm3, MASSES * m / dt**2) for m in masses]
-    pools = node_pools(stack, sheets, masses)
+    none = no_rims(1)
+    rims = none + [rim_entries(ply.active) for ply in stack.plies] + none
+    pools = node_pools(stack, sheets, masses, rims)
     pairs, exposed, places = contact_pairs(case, stack, masses, sheets)
     blocks = row_blocks(sheets)
     peaks = summit_records(tool_mesh, case.diaphragms.element_mm, 0.5 * stack.thickness[0])
@@ -62,7 +65,7 @@ def _whole_scene(case: Case, even: bool) -> Scene:
     lines /= case.diaphragms.pre_stretch
     walls = [line[end] for line in (stack.diaphragm.x_lines, stack.diaphragm.y_lines) for end in (0, -1)]
     model = Model(
-        sheets=sheets, blocks=blocks, pairs=pairs, **pools,
+        sheets=sheets, blocks=blocks, pairs=pairs, **pools, **rim_lists(rims, sheets, blocks),
         **without_mirror(pools["inverse_mass"], len(blocks)), lines=lines, tool_lines=lines,
         shear_tables=laws, tangents=tables, ogden=np.array(terms, dtype=float), exposed=exposed, tool=values,
         tool_origin=np.zeros(3) if tool_field is None else np.asarray(tool_field.origin, dtype=float),

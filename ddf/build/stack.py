@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ddf.build.rim import RINGS
 from ddf.case import Case, resolve_gap_mm, woven_material
 from ddf.case.schema import Tool, WovenMaterial
 from ddf.mesh.diaphragm import DiaphragmMesh, mesh_diaphragm
@@ -37,7 +38,8 @@ def mesh_stack(case: Case, even: bool = False) -> Stack:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm
         shape = np.asarray(outline) - np.asarray(ply.offset_mm)
         offset = (ply.offset_mm[0], ply.offset_mm[1])
-        plies.append(mesh_ply(shape, holes, slits, ply.orientation_deg, ply.element_mm, offset, ply.name, even))
+        angle, element = ply.orientation_deg, ply.element_mm
+        plies.append(mesh_ply(shape, holes, slits, angle, element, offset, ply.name, even, RINGS))
     d = case.diaphragms
     corners = np.concatenate([np.asarray(ply.outline_mm(), dtype=float) for ply in case.plies])
     low, high = corners.min(axis=0) - d.margin_mm, corners.max(axis=0) + d.margin_mm

@@ -24,7 +24,7 @@ forces lie a gap apart and every contact would be a couple. Slip is a history an
 anchor: in folds as tight as the contact distance places move where nothing slips. Nor are its components s^a kept: a
 master that stretched took what slip was held along, and gave the springs energy that no force had worked for.
 
-A node whose place lies outside the master's fabric is not in contact. Over the last cell before a ply's edge U
+A node whose place lies outside the master's fabric is not in contact. Over half a cell on both sides of a ply's edge U
 fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the node off the edge): the corner of one
 ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
 30 m/s (seen). One that is far away rests for as many
@@ -261,9 +261,9 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
 
 
 @njit(**FAST)
-def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
+def _settle(w, nodes, count, place, slip, rest, rows, cols, deepest, inverse_reach):
     """New places; nodes that do not touch get area 0 and lose their slip. Returns how many touch or just left."""
-    end_u, end_v = cell.shape[0] - 1.0, cell.shape[1] - 1.0
+    end_u, end_v = rows - 1.0, cols - 1.0
     touching = 0
     for t in range(count):
         node, u, v, gap = nodes[t], w[U + t], w[V + t], w[GAP + t]
@@ -274,8 +274,7 @@ def _settle(w, nodes, count, place, slip, rest, cell, deepest, inverse_reach):
         place[4, node] = 0.0
         touches = gap < 0.0 and gap >= deepest and u >= 0.0 and v >= 0.0 and u < end_u and v < end_v
         touches = touches and abs(w[DU + t]) < FARTHEST and abs(w[DV + t]) < FARTHEST
-        i, j = min(max(int(u), 0), cell.shape[0] - 1), min(max(int(v), 0), cell.shape[1] - 1)
-        if touches and w[COVER + t] > 0.0 and cell[np.uint64(i), np.uint64(j)] > 0.0:
+        if touches and w[COVER + t] > 0.0:
             touching += 1
             continue
         if w[BEFORE + t] > 0.0:
@@ -397,16 +396,15 @@ def _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)
 
 @njit(**FAST)
 def _chunk(
-    w, surface, patch, nodes, count, x, v, f, normal, area, y, rates, cell, place, slip, rest, buffer, span, pair,
+    w, surface, patch, nodes, count, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, buffer, span, pair,
     reach, dt, out,
 ):  # fmt: skip
     """All passes over one chunk; arguments as in `layer_forces`, grids of nodes and quads made flat."""
-    n_rows, n_cols = cell.shape
-    cols = np.uint64(n_cols)
+    end_u, end_v = np.float64(rows), np.float64(cols)
     _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols)
-    _project(w, surface, count, np.float64(n_rows), np.float64(n_cols), pair.sign, pair.offset)
+    _project(w, surface, count, end_u, end_v, pair.sign, pair.offset)
     deepest = -DEEPEST * pair.offset
-    if _settle(w, nodes, count, place, slip, rest, cell, deepest, 1.0 / reach) > 0:
+    if _settle(w, nodes, count, place, slip, rest, end_u, end_v, deepest, 1.0 / reach) > 0:
         _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
         hard = HARD * pair.offset
@@ -418,13 +416,13 @@ def _chunk(
 
 @njit(**FAST)
 def layer_forces(
-    xs, vs, fs, normal, area, xm, vm, cell, centre, place, slip, rest, buffer, span, pair, reach, dt, low, high,
+    xs, vs, fs, normal, area, xm, vm, centre, place, slip, rest, buffer, span, pair, reach, dt, low, high,
     scratch, out,
 ):  # fmt: skip
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
     xs, vs, fs (3, n, m) slave; normal (n, m) gathers its normal forces [N]; xm, vm (N, M, 4) master as from
-    `pack_rows`, vm with zeros for the cover; area (n, m) [mm2]; cell (N, M) area of the master's cells;
+    `pack_rows`, vm with zeros for the cover; area (n, m) [mm2];
     centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
     of the last step; slip (2, n, m) [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes
     that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
@@ -435,13 +433,14 @@ def layer_forces(
     x, v, f = xs.reshape((3, size)), vs.reshape((3, size)), fs.reshape((3, size))
     place, slip = place.reshape((5, size)), slip.reshape((2, size))
     rest, area, normal = rest.reshape(size), area.reshape(size), normal.reshape(size)
-    y, rates, forces = xm.reshape(4 * cell.size), vm.reshape(4 * cell.size), buffer.reshape(4 * cell.size)
+    y, rates, forces = xm.reshape(xm.size), vm.reshape(vm.size), buffer.reshape(buffer.size)
+    rows, cols = np.uint64(centre.shape[0]), np.uint64(centre.shape[1])
     w, surface, patch, nodes = scratch
     node, end = np.uint64(low * xs.shape[2]), np.uint64(high * xs.shape[2])
     while node < end:
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, cell, place, slip, rest, forces, span,
+                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, forces, span,
                 pair, reach, dt, out,
             )  # fmt: skip

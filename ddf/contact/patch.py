@@ -6,7 +6,8 @@ clamped stack never came to rest). The spline's normal is continuous, so the pro
 
 With t = u - i in [-1/2, 1/2] the weights of nodes i-1, i, i+1 are  1/2 (1/2 - t)^2, 3/4 - t^2,
 1/2 (1/2 + t)^2. They sum to 1 and reproduce linear functions. The surface lies h^2 k / 8 inside a curve k
-of the nodes. Near an edge the last whole patch of 3 x 3 nodes is extended.
+of the nodes. Beyond a ply's edges it goes on over nodes of a rim (`rim.py`); where a patch has not all of its 3 x 3
+nodes even so, the next whole one is extended.
 
 Nodes lie as (x, y, z, cover), forces on them as (x, y, z, normal force), so that one packed instruction serves all
 components (`quad.py`).
@@ -93,12 +94,6 @@ def spread(buffer, k, stride, a, b, value, along_u, along_v):
     _add_row(buffer, k, b, add_scaled(a[1], value, scaled(a[4], along_u)), scaled(a[1], along_v))
     k += stride
     _add_row(buffer, k, b, add_scaled(a[2], value, scaled(a[5], along_u)), scaled(a[2], along_v))
-
-
-def edge_cover(cell: NDArray[np.float64]) -> NDArray[np.float64]:
-    """1 at nodes amid four cells that exist, else 0; cell (n, m) areas, last row and column empty."""
-    p = np.pad(cell > 0.0, ((1, 0), (1, 0)))
-    return (p[1:, 1:] & p[:-1, 1:] & p[1:, :-1] & p[:-1, :-1]).astype(np.float64)
 
 
 def patch_centres(exists: NDArray[np.bool_]) -> NDArray[np.int32]:

@@ -21,6 +21,7 @@ from ddf.contact.layers import UNKNOWN, pack_rows
 from ddf.contact.normal_cones import STACK, TILE, begin, find_boxes, find_cones, tile_count, tile_levels, walk
 from ddf.contact.patch import interpolate, weights
 from ddf.contact.quad import part
+from ddf.contact.rim import extend, sheet_rim
 from ddf.contact.self_contact import far
 from ddf.jit import FAST
 from ddf.model import Model, State, sheet_scalars, sheet_vectors
@@ -162,10 +163,10 @@ def _follow_tile(sheet, lines, grid, tile, other, box, offset, reach, above, bel
 
 
 @njit(**FAST)
-def seek(sheet, lines, x, cover, packed, cell, area, centre, offset, skin, above, below, tiles):
+def seek(sheet, lines, x, cover, packed, rim, cell, area, centre, offset, skin, above, below, tiles):
     """Find the places of a sheet's nodes on itself; returns whether any are followed above, and below.
 
-    x (3, n, m), cover (n, m), packed (n, m, 4), written if anything is searched; offset: distance at which the sheet
+    x (3, n, m), cover (n, m), packed (n, m, 4), written if anything is searched; rim: RIM of the sheet; offset: distance at which the sheet
     touches itself; skin: way that its parts can approach each other before the next search [mm]; above, below: place
     (5, n, m) and rest (n, m) of the pairs of sign +1, -1; tiles: levels, vectors, cones, boxes, stack of
     `contact.normal_cones`.
@@ -177,7 +178,9 @@ def seek(sheet, lines, x, cover, packed, cell, area, centre, offset, skin, above
         reach = offset + min(skin, math.pi * sheet.fold_radius)
         find_boxes(x, cell, levels, boxes)
         pack_rows(x, cover, packed, 0, sheet.rows)
-        grid = (x, packed.reshape(packed.size), cell, area, centre)
+        y = packed.reshape(packed.size)
+        extend(y, rim, 0, rim.shape[0])
+        grid = (x, y, cell, area, centre)
         top = walk(levels, cones, boxes, WIDEST, reach, stack, begin(levels, stack))
         while top >= 0:
             one, two = stack[top, 1:3], stack[top, 3:5]
@@ -215,7 +218,8 @@ class SelfContact:
             cover, cell, area = (sheet_scalars(model, pool, k) for pool in (model.cover, model.cell, model.area))
             quads = packed[4 * node : 4 * (node + size)].reshape(n, m, 4)
             centre = model.centre[2 * node : 2 * (node + size)].reshape(n, m, 2)
-            fields = [sheet, model.lines, sheet_vectors(model, state.x, k), cover, quads, cell, area, centre]
+            x, rim = sheet_vectors(model, state.x, k), sheet_rim(model, k)
+            fields = [sheet, model.lines, x, cover, quads, rim, cell, area, centre]
             self._searches.append((pairs, [*fields, float(model.pairs["offset"][pairs[0]])], [*sides, tiles]))
 
     def seek(self, skin: float, each: Callable[[list[Callable[[], Any]]], list[Any]]) -> None:

@@ -6,6 +6,7 @@ from numba import njit
 
 from ddf.contact.bed import BED, bear, find_borne, lose
 from ddf.contact.layers import clear_buffer, collect_row, layer_forces, pack_rows, touched
+from ddf.contact.rim import clear_rim, extend, hand_over
 from ddf.contact.self_contact import drop_near
 from ddf.contact.summit import add_pushes, summit_forces
 from ddf.contact.tool import settle_row, tool_forces
@@ -93,6 +94,14 @@ def pack(model, state, work, b):
 
 
 @njit(**FAST)
+def extend_rim(model, work, b):
+    """Put the rim nodes in a block's rows, packed, where those that they go on from take them."""
+    first, end = model.rim_first[b], model.rim_first[b + 1]
+    extend(work.packed, model.rim, first, end)
+    extend(work.rates, model.rim, first, end)
+
+
+@njit(**FAST)
 def layers(model, state, work, member, b, dt, reach):
     """Forces of all pairs in which the block's sheet is the slave."""
     block = model.blocks[b]
@@ -119,8 +128,7 @@ def layers(model, state, work, member, b, dt, reach):
         layer_forces(
             vectors(state.x, slave), vectors(state.v, slave), vectors(state.f, slave), normal,
             scalars(model.area, slave),
-            _packed(work.packed, master), _packed(work.rates, master), scalars(model.cell, master),
-            _centres(model, master),
+            _packed(work.packed, master), _packed(work.rates, master), _centres(model, master),
             place, slip, rest, buffer, span, pair, reach, dt, block.low, block.high, scratch, out,
         )  # fmt: skip
     if model.mirror >= 0:
@@ -241,7 +249,10 @@ def collect(model, state, work, b):
                 j0, j1 = touched(span, i)
                 if j1 > j0:
                     collect_row(f, press, SHARE, buffer, i, j0, j1)
+            p, q = model.parent_first[b], model.parent_first[b + 1]
+            hand_over(f, press, SHARE, buffer, span, model.rim_parents, p, q, sheet.node)
             index += 1
+    clear_rim(f, press, model.rim, model.rim_first[b], model.rim_first[b + 1], sheet.node)
     if sheet.kind == SHELL_PLY and block.low > 0:
         _collect_shell(state, sheet, work.shell_carry, block.low, b)
 

@@ -10,7 +10,7 @@ Step n, of length dt (leapfrog: v lives half a step behind x):
     4  plies: the same along family 2                                                       fibre lines
        tool's sheet: f <- m (m + J)^-1 (f + tool), then as 2 (`contact.tool`)               blocks of rows
     5, 6  as 3, 4, with the string's step
-    7  plies: x <- x + dt v                                                                 blocks of rows
+    7  plies: x <- x + dt v; then the rims of plies (`contact.rim`)                        blocks of rows
 
 In a half model (`dynamics.mirror`) forces are folded back and ghosts let go between 1 and 2, and follow after 7.
 
@@ -34,10 +34,10 @@ from ddf.elements.squeeze import SHARE
 from ddf.jit import FAST
 from ddf.model import PLY
 
-# phases in order; the first two once before all steps, the turns of fibre tension (two of them for a ply that meets
+# phases in order; the first three once before all steps, the turns of fibre tension (two of them for a ply that meets
 # the tool itself) from FIRST_TURN on
-PACK, BEGIN, FORCES, COLLECT, FOLD_BACK, LEAVE, FOLLOW_SPEED, FIRST_TURN = range(8)
-DRIFT, FOLLOW = FIRST_TURN + 6, FIRST_TURN + 7
+PACK, BEGIN, RIM, FORCES, COLLECT, FOLD_BACK, LEAVE, FOLLOW_SPEED, FIRST_TURN = range(9)
+DRIFT, FOLLOW, RIM_AGAIN = FIRST_TURN + 6, FIRST_TURN + 7, FIRST_TURN + 8
 
 
 @njit(**FAST)
@@ -57,7 +57,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     for n in range(-1, schedule.shape[0]):
         row = work.nothing if n < 0 else schedule[n]
         early = 1 + (first + n) % 2
-        for phase in range(PACK if n < 0 else FORCES, FORCES if n < 0 else FOLLOW + 1):
+        for phase in range(PACK if n < 0 else FORCES, FORCES if n < 0 else RIM_AGAIN + 1):
             turn = phase - FIRST_TURN - 2 if phase < DRIFT else 4
             settle = (
                 1 if FIRST_TURN <= phase < DRIFT else 0
@@ -74,6 +74,8 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
                     continue
             elif phase == FOLLOW_SPEED and model.twins.shape[0] == 0:
                 continue
+            elif phase in (RIM, RIM_AGAIN) and model.rim.shape[0] == 0:
+                continue
             t = draw(sync, base)
             while t < tasks:
                 if phase == PACK:
@@ -81,6 +83,8 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
                 elif phase in (BEGIN, FOLLOW):
                     mirror.follow(model, state, work, t)
                     mirror.follow_tension(model, state, t)
+                elif phase in (RIM, RIM_AGAIN):
+                    contacts.extend_rim(model, work, t)
                 elif phase == FORCES:
                     phases.internal(model, state, work, row, t, work.scratch[member])
                     contacts.layers(model, state, work, member, t, model.dt, reach)

@@ -76,6 +76,7 @@ def mesh_ply(
     offset: tuple[float, float] = (0.0, 0.0),
     name: str = "ply-1",
     even: bool = False,
+    rings: int = 0,
 ) -> PlyMesh:
     """Lattice of a ply with the outline `polygon` (k, 2) [mm] less `holes`, moved by `offset` [mm].
 
@@ -84,7 +85,7 @@ def mesh_ply(
     as close to `element_mm` as whole numbers allow); otherwise they measure exactly `element_mm` and the
     lattice is centred on the outline's box in fibre axes. Cut cells carry their exact area fraction, set to
     0 under 0.02. A slit (polyline (p, 2), zero width) takes out the cells it crosses: it is one cell wide.
-    With `even` the numbers of cells along both families are even.
+    With `even` the numbers of cells along both families are even. `rings` of nodes more lie all around.
     Raises MeshError for an outline that is not simple or smaller than two elements.
     """
     if not element_mm > 0.0:
@@ -92,12 +93,12 @@ def mesh_ply(
     angle = np.deg2rad(orientation_deg)
     to_fibre = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     loops = [(loop + np.asarray(offset)) @ to_fibre.T for loop in clean_outline(polygon, list(holes), name)]
-    blocks = _fit_lattice(loops[0], element_mm, name, even)
+    blocks = [_widened(block, rings) for block in _fit_lattice(loops[0], element_mm, name, even)]
     x = mesh_grid([blocks[0]], [blocks[1]], orientation_deg, name)
     start = np.array([b.start for b in blocks])
     spacing = np.array([(b.stop - b.start) / b.cells for b in blocks])
     cells = (blocks[0].cells, blocks[1].cells)
-    grid_loops = [np.clip((loop - start) / spacing, 0.0, cells) for loop in loops]
+    grid_loops = [np.clip((loop - start) / spacing, rings, np.array(cells) - rings) for loop in loops]
     fraction = cell_fractions(grid_loops, cells)
     fraction[fraction < SMALLEST_FRACTION] = 0.0
     for slit in slits:
@@ -140,6 +141,12 @@ def _fit_lattice(outer: FloatArray, element_mm: float, name: str, even: bool) ->
         middle = 0.5 * (low + high)
         low, high = middle - 0.5 * cells * element_mm, middle + 0.5 * cells * element_mm
     return [Block(float(a), float(b), int(c)) for a, b, c in zip(low, high, cells, strict=True)]
+
+
+def _widened(block: Block, rings: int) -> Block:
+    """A block with so many cells more at both ends."""
+    step = (block.stop - block.start) / block.cells
+    return Block(block.start - rings * step, block.stop + rings * step, block.cells + 2 * rings)
 
 
 def _active_nodes(fraction: FloatArray) -> NDArray[np.bool_]:

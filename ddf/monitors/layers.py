@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ddf.contact.rim import sheet_rim, with_rim
 from ddf.model import sheet_scalars, sheet_vectors
 from ddf.scene import Scene
 
@@ -33,6 +34,7 @@ def depth_in_layers(scene: Scene) -> tuple[float, float]:
         cell = sheet_scalars(scene.model, scene.model.cell, master)
         node = int(scene.model.sheets[master]["node"])
         centre = scene.model.centre[2 * node : 2 * (node + cell.size)].reshape(*cell.shape, 2)
+        y = with_rim(y, sheet_rim(scene.model, master))
         nodes, first = x[0].size, int(pair["first"])
         u, v = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[:2]
         i, j = (np.clip(p.astype(int), 0, n - 2) for p, n in zip((u, v), cell.shape, strict=True))

@@ -59,7 +59,7 @@ def lost_nodes(model: Model, state: State, number: int) -> tuple[np.ndarray, int
         return nodes, held
     u, v = u[tuple(nodes.T)], v[tuple(nodes.T)]
     i, j = u.astype(int), v.astype(int)
-    cover = sheet_scalars(model, model.cover, int(pair["master"])) > 0.0
+    cover = sheet_scalars(model, model.cover, int(pair["master"])) >= 1.0
     whole = cover[i, j] & cover[i + 1, j] & cover[i, j + 1] & cover[i + 1, j + 1]
     fabric = sheet_scalars(model, model.cell, int(pair["master"]))[i, j] > 0.0
     surface, normal = _bilinear(sheet_vectors(model, state.x, int(pair["master"])), i, j, u - i, v - j)

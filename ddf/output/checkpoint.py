@@ -18,7 +18,7 @@ from ddf.output.folder import RunFolder
 from ddf.scene import Scene
 
 CHECKPOINT = "checkpoint.npz"
-VERSION = 7
+VERSION = 8
 FREE_KEYS = ("title", "solver.threads")  # may differ between a run and its resumption
 
 

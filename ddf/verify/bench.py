@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 from ddf.build import state_at_rest
 from ddf.build.pairs import first_places
 from ddf.build.pools import corner_sum, row_blocks
+from ddf.build.rim import no_rims, rim_lists
 from ddf.case import HyperelasticMaterial, WovenMaterial
 from ddf.contact.patch import patch_centres
 from ddf.contact.summit import SUMMIT
@@ -90,6 +91,7 @@ def assemble(
     pools, blocks = _pools(sheets, records), row_blocks(records)
     model = Model(
         sheets=records, blocks=blocks, pairs=pairs, **pools, **without_mirror(pools["inverse_mass"], len(blocks)),
+        **rim_lists(no_rims(len(records)), records, blocks),
         lines=np.concatenate(lines), tool_lines=np.concatenate(lines),
         shear_tables=tables, tangents=np.zeros((1, 1)), ogden=_terms(sheets), exposed=exposed,
         tool=tool.field.values if tool else np.zeros((2, 2, 2, 4), np.float32),

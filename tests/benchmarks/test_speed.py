@@ -118,7 +118,7 @@ def test_contact_of_a_pair(benchmark, state):
     pair = np.zeros(1, PAIR)
     for key, value in {"sign": 1, "offset": 1, "friction": 0.5, "stiffness": 2, "damping": 2e-5, "mass": 8e-10}.items():
         pair[key] = value
-    fs, area, cell = np.zeros_like(xs), np.full((n, n), 4.0), np.ones((m, m))
+    fs, area = np.zeros_like(xs), np.full((n, n), 4.0)
     centre = patch_centres(np.ones((m, m), bool))
     place = np.concatenate([xs[:2] / 2.5, np.full((1, n, n), UNKNOWN), np.zeros((2, n, n))])
     still, slip, buffer, out = np.zeros_like(xs), np.zeros((2, n, n)), np.zeros((m, m, 4)), np.zeros(4)
@@ -130,7 +130,7 @@ def test_contact_of_a_pair(benchmark, state):
 
     def run():
         layer_forces(
-            xs, still, fs, area.copy(), area, packed, rates, cell, centre, place, slip, rest, buffer, span, pair[0],
+            xs, still, fs, area.copy(), area, packed, rates, centre, place, slip, rest, buffer, span, pair[0],
             reach, 1e-5, 0, n, scratch, out,
         )  # fmt: skip
 

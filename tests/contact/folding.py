@@ -10,7 +10,7 @@ from ddf.contact.normal_cones import STACK, tile_count, tile_levels
 from ddf.contact.patch import patch_centres
 from ddf.contact.self_contact import drop_near
 from ddf.contact.self_search import seek
-from ddf.model import DIAPHRAGM, SHEET
+from ddf.model import DIAPHRAGM, RIM, SHEET
 
 
 def dome(cells, element, degrees):
@@ -48,8 +48,8 @@ class Fold:
     def find(self, x, skin=0.5):
         """Search; whether any node is followed above, and below."""
         return seek(
-            self.sheet, self.lines, x, self.cover, np.zeros((*self.shape, 4)), self.cell, self.area, self.centre,
-            self.offset, skin, *self.sides, self.tiles,
+            self.sheet, self.lines, x, self.cover, np.zeros((*self.shape, 4)), np.zeros(0, RIM), self.cell,
+            self.area, self.centre, self.offset, skin, *self.sides, self.tiles,
         )  # fmt: skip
 
     def forces(self, x, v=None, dt=1e-6):
@@ -61,7 +61,7 @@ class Fold:
             buffer, span = np.zeros((*self.shape, 4)), np.tile(np.array([NOWHERE, 0]), (self.shape[0], 1))
             drop_near(self.sheet, self.lines, place, slip, rest, 0, self.shape[0])
             layer_forces(
-                x, v, f, self.normal, self.area, t.packed(x), t.packed(v, 0.0), self.cell, self.centre, place, slip,
+                x, v, f, self.normal, self.area, t.packed(x), t.packed(v, 0.0), self.centre, place, slip,
                 np.where(rest < 0, rest, 0).astype(np.int8), buffer, span, pair, 1e6, dt, 0, self.shape[0], scratch,
                 self.out,
             )  # fmt: skip

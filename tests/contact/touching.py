@@ -31,7 +31,7 @@ class Layers:
         self.pair = pair
         self.shape, self.master = xs.shape[1:], xm.shape[1:]
         self.area = np.full(self.shape, area)
-        self.cell, self.cover = np.ones(self.master), 1.0
+        self.cover: float | np.ndarray = 1.0
         self.centre = patch_centres(np.ones(self.master, bool))
         origin = xm[:2, 0, 0].reshape(2, 1, 1)
         start = (xs[:2] - origin) / spacing
@@ -58,8 +58,8 @@ class Layers:
             rest = np.zeros(self.shape, np.int8)
             scratch = tuple(part[0] for part in chunk_scratch(1))
             layer_forces(
-                xs, vs, fs, np.zeros(self.shape), self.area, packed(xm, self.cover), packed(vm, 0.0), self.cell,
-                self.centre, self.place, self.slip, rest,
+                xs, vs, fs, np.zeros(self.shape), self.area, packed(xm, self.cover), packed(vm, 0.0), self.centre,
+                self.place, self.slip, rest,
                 buffer, span, self.pair, 1e6, dt, low, high, scratch, self.out,
             )  # fmt: skip
             for i in range(self.master[0]):
