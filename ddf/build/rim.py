@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
@@ -44,10 +46,11 @@ def rim_entries(exists: BoolArray) -> np.ndarray:
         found = {}
         for i, j in np.argwhere(binary_dilation(known, np.ones((3, 3))) & ~known):
             for ways in (_AXES, _DIAGONALS):
-                there = [(i + a, j + b, i + 2 * a, j + 2 * b) for a, b in ways]
-                there = [w for w in there if 0 <= w[2] < n and 0 <= w[3] < m and known[w[0], w[1]] and known[w[2], w[3]]]
-                if there:
-                    found[int(i * m + j)] = _mean([(int(a * m + b), int(c * m + d)) for a, b, c, d in there], weights)
+                lines = [((i + a, j + b), (i + 2 * a, j + 2 * b)) for a, b in ways]
+                lines = [(a, b) for a, b in lines if 0 <= b[0] < n and 0 <= b[1] < m and known[a] and known[b]]
+                if lines:
+                    pairs = [(int(a[0] * m + a[1]), int(b[0] * m + b[1])) for a, b in lines]
+                    found[int(i * m + j)] = _mean(pairs, weights)
                     break
         weights |= found
         known.ravel()[list(found)] = True
@@ -55,7 +58,7 @@ def rim_entries(exists: BoolArray) -> np.ndarray:
     return np.sort(np.array(records, dtype=RIM), order=("node", "parent"))
 
 
-def rim_lists(rims: list[np.ndarray], sheets: np.ndarray, blocks: np.ndarray) -> dict[str, np.ndarray]:
+def rim_lists(rims: list[np.ndarray], sheets: np.ndarray, blocks: np.ndarray) -> dict[str, Any]:
     """Fields of a model from the RIM records of each sheet."""
     parts = []
     for rim, sheet in zip(rims, sheets, strict=True):

@@ -31,15 +31,15 @@ class Stack(NamedTuple):
     thickness: list[float]  # as clamped [mm]
 
 
-def mesh_stack(case: Case, even: bool = False) -> Stack:
-    """Mesh all sheets of a case, with even numbers of cells where wanted. Raises MeshError."""
+def mesh_stack(case: Case, even: bool = False, rings: int = RINGS) -> Stack:
+    """Mesh all sheets of a case, with even numbers of cells where wanted, rings around plies. Raises MeshError."""
     plies = []
     for ply in case.plies:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm
         shape = np.asarray(outline) - np.asarray(ply.offset_mm)
         offset = (ply.offset_mm[0], ply.offset_mm[1])
         angle, element = ply.orientation_deg, ply.element_mm
-        plies.append(mesh_ply(shape, holes, slits, angle, element, offset, ply.name, even, RINGS))
+        plies.append(mesh_ply(shape, holes, slits, angle, element, offset, ply.name, even, rings))
     d = case.diaphragms
     corners = np.concatenate([np.asarray(ply.outline_mm(), dtype=float) for ply in case.plies])
     low, high = corners.min(axis=0) - d.margin_mm, corners.max(axis=0) + d.margin_mm

@@ -25,7 +25,9 @@ TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
 
 
-def areal_masses(case: Case, stack: Stack, density: float, terms, tangents: list[float]) -> tuple[list[float], list[float]]:
+def areal_masses(
+    case: Case, stack: Stack, density: float, terms, tangents: list[float]
+) -> tuple[list[float], list[float]]:
     """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2].
 
     Where neither a scaling nor a step is given, lattice plies get what their own stable step needs to be that of the
@@ -52,9 +54,7 @@ def areal_masses(case: Case, stack: Stack, density: float, terms, tangents: list
     return scales, [skin, *plies, skin]
 
 
-def _fitting_scale(
-    case: Case, number: int, stack: Stack, terms, shear: float, masses: tuple[float, float]
-) -> float:
+def _fitting_scale(case: Case, number: int, stack: Stack, terms, shear: float, masses: tuple[float, float]) -> float:
     """Mass scaling with which a ply between diaphragms has their stable step; masses of a diaphragm and of the ply."""
     ply, material, (skin, areal) = stack.plies[number], stack.materials[number], masses
 

@@ -16,8 +16,8 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass; left out without target_step_s: what gives plies the diaphragms' stable "
-        "step (20 to 30 with the shipped cases), of shell-membrane plies 24. Either this or target_step_s.",
+        description="Factor on the plies' mass; left out without target_step_s: what gives plies the stable step of "
+        "the diaphragms (20 to 30 in the shipped cases), shell-membrane plies 24. Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
         default=None,

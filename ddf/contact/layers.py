@@ -441,6 +441,6 @@ def layer_forces(
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, forces, span,
-                pair, reach, dt, out,
+                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, forces,
+                span, pair, reach, dt, out,
             )  # fmt: skip

@@ -166,10 +166,10 @@ def _follow_tile(sheet, lines, grid, tile, other, box, offset, reach, above, bel
 def seek(sheet, lines, x, cover, packed, rim, cell, area, centre, offset, skin, above, below, tiles):
     """Find the places of a sheet's nodes on itself; returns whether any are followed above, and below.
 
-    x (3, n, m), cover (n, m), packed (n, m, 4), written if anything is searched; rim: RIM of the sheet; offset: distance at which the sheet
-    touches itself; skin: way that its parts can approach each other before the next search [mm]; above, below: place
-    (5, n, m) and rest (n, m) of the pairs of sign +1, -1; tiles: levels, vectors, cones, boxes, stack of
-    `contact.normal_cones`.
+    x (3, n, m), cover (n, m), packed (n, m, 4), written if anything is searched; rim: RIM of the sheet; offset:
+    distance at which the sheet touches itself; skin: way that its parts can approach each other before the next search
+    [mm]; above, below: place (5, n, m) and rest (n, m) of the pairs of sign +1, -1; tiles: levels, vectors, cones,
+    boxes, stack of `contact.normal_cones`.
     """
     levels, vectors, cones, boxes, stack = tiles
     forget(*above)

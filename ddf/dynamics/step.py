@@ -47,7 +47,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
     first: number of the first step; reach: way that a sheet can go in a step, for what sleeps and rests [mm].
     All phases are cases of one loop: each function that calls what is below costs a compiler as much as all of it.
     """
-    blocks, half = model.blocks.shape[0], model.mirror >= 0
+    blocks, half, rimless = model.blocks.shape[0], model.mirror >= 0, model.rim.shape[0] == 0
     tool_blocks, tool_first = 0, 0
     if model.tool_sheet >= 0:
         tool_first, tool_blocks = contacts.blocks_of(model, model.tool_sheet)
@@ -72,9 +72,7 @@ def advance(member, members, sync, model, state, work, schedule, first, reach):
             elif phase in (BEGIN, FOLD_BACK, LEAVE, FOLLOW):
                 if not half:
                     continue
-            elif phase == FOLLOW_SPEED and model.twins.shape[0] == 0:
-                continue
-            elif phase in (RIM, RIM_AGAIN) and model.rim.shape[0] == 0:
+            elif model.twins.shape[0] == 0 if phase == FOLLOW_SPEED else rimless and phase in (RIM, RIM_AGAIN):
                 continue
             t = draw(sync, base)
             while t < tasks:

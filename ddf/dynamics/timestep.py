@@ -1,12 +1,13 @@
 """Stable steps from bounds on the eigenvalues of each sheet's forces over mass.
 
-All bounds are per area: a sheet of areal mass m with several stiffnesses has omega^2 <= the sum of theirs over m. But what
-acts in the plane of a sheet and what acts along its normal meet at one node only where cells lie at an angle to each other: with
-all of the one goes at most half of the other where they are at right angles. So of shear or membrane stiffness M and contact's
-2 K along the normal, 0.3 of it in the plane (friction springs), counts the larger of M/2 + 2 K and M + 0.6 K.
+All bounds are per area: a sheet of areal mass m with several stiffnesses has omega^2 <= the sum of theirs over m. But
+what acts in the plane of a sheet and what acts along its normal meet at a node only where cells lie at an angle to each
+other: half of the one at most with all of the other, where cells are at right angles. So of shear or membrane stiffness
+M and of contact's, 2 K along the normal and 0.3 of it in the plane (friction springs), the larger of M/2 + 2 K and
+M + 0.6 K counts.
 
-On the 0/90 case, at 0.85 of the bound, steps 1.3 times those of the plain sum were too long for a diaphragm at the apex under
-full vacuum, and 1.15 times were right in all that is audited; by this bound they are 1.15 times those.
+On the 0/90 case, at 0.85 of the bound, steps 1.3 times those of the plain sum were too long for a diaphragm at the apex
+under full vacuum, and 1.15 times were right in all that is audited; by this bound they are 1.15 times those.
 
 Explicit steps with damping that lags half a step are stable for  omega dt <= 2 (sqrt(1 + z^2) - z),  z the
 damping ratio at omega. Fibre tension and the contact with the tool are integrated implicitly and set no limit.

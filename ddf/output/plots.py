@@ -47,7 +47,7 @@ def formed_image(
     view = view_from_above(x, sheet.exists, box, pixels, surface, floor_mm)
     if sheet.kind == "diaphragm":
         return photograph(view, x, sheet.exists, RUBBER, gloss=0.20)
-    ink = None if surface is None else drawn_lines(view, surface.spacing)
+    ink = None if surface is None else drawn_lines(view, sheet.exists, surface.spacing)
     return photograph(view, x, sheet.exists, ink=ink)
 
 

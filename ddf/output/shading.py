@@ -111,11 +111,17 @@ def photograph(
     return np.clip(image, 0.0, 1.0) ** 0.92
 
 
-def drawn_lines(view: TopView, spacing: tuple[float, float], every_mm: float = 10.0, width_mm: float = 0.7) -> Array:
-    """Ink of lines drawn on the flat ply along both families every `every_mm`, (rows, columns), 0..1."""
+def drawn_lines(
+    view: TopView,
+    exists: NDArray[np.bool_],
+    spacing: tuple[float, float],
+    every_mm: float = 10.0,
+    width_mm: float = 0.7,
+) -> Array:
+    """Ink of lines drawn on the flat ply along both families every `every_mm` from its edge, (rows, columns), 0..1."""
     ink = np.zeros(view.z.shape)
-    for coordinate, size in ((view.u, spacing[0]), (view.v, spacing[1])):
-        place = coordinate * size
+    for axis, coordinate, size in ((0, view.u, spacing[0]), (1, view.v, spacing[1])):
+        place = (coordinate - np.flatnonzero(exists.any(axis=1 - axis))[0]) * size
         away = np.abs(place - every_mm * np.round(place / every_mm))
         ink = np.maximum(ink, np.clip(1.5 - away / (0.5 * width_mm), 0.0, 1.0))
     return np.where(view.covered, 0.30 * ink, 0.0)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ddf.build import build_scene, state_at_rest
+from ddf.build.rim import no_rims, rim_lists
 from ddf.build.step import stiffest
 from ddf.case.load import case_from_dict
 from ddf.case.presets import PRESETS
@@ -61,7 +62,10 @@ def entered_law(fabric: WovenMaterial) -> tuple[FloatArray, FloatArray]:
 def case_scene(
     fabric: WovenMaterial, size_mm: Sequence[float], element_mm: float, ply: Table | None = None, **tables: Table
 ) -> Scene:
-    """Scene of a case with one rectangular ply, without added mass; `ply` and `tables` add keys to the case's own."""
+    """Scene of a case with one rectangular ply, without added mass; `ply` and `tables` add keys to the case's own.
+
+    The ply's grid ends at its edges.
+    """
     own: Table = {"material": "fabric", "size_mm": list(size_mm), "element_mm": element_mm}
     frame = [max(50.0, side + AROUND_MM) for side in size_mm]
     raw: dict[str, Table] = {
@@ -73,7 +77,7 @@ def case_scene(
     }
     for name, table in tables.items():
         raw[name] = raw.get(name, {}) | table
-    return build_scene(case_from_dict(raw | {"plies": [own | (ply or {})]}))
+    return build_scene(case_from_dict(raw | {"plies": [own | (ply or {})]}), rings=0)
 
 
 def ply_scene(
@@ -121,7 +125,8 @@ def alone(scene: Scene, k: int) -> Scene:
         sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,
         weight=model.weight[4 * first : 4 * (first + n)].copy(),
         centre=model.centre[2 * first : 2 * (first + n)].copy(),
-        exposed=model.exposed[:0], tool_sheet=-1, **without_mirror(pools["inverse_mass"], len(blocks)),
+        **rim_lists(no_rims(1), sheets, blocks), exposed=model.exposed[:0], tool_sheet=-1,
+        **without_mirror(pools["inverse_mass"], len(blocks)),
     )  # fmt: skip
     x = scene.state.x[3 * first : 3 * (first + n)].copy()
     return replace(scene, model=small, state=state_at_rest(small, x, np.zeros(0)), sheets=(scene.sheets[k],))

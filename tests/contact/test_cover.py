@@ -69,7 +69,10 @@ def test_contact_fades_around_edges_and_the_surface_goes_on(angle, hole):
         assert np.mean(inside >= 1.0) > 0.9
         assert np.mean(outside <= 0.0) > 0.9
         for u, v in middles:
-            for near in ([(int(u) + 0.5 + e, v) for e in (-1e-9, 1e-9)], [(u, int(v) + 0.5 + e) for e in (-1e-9, 1e-9)]):
+            for near in (
+                [(int(u) + 0.5 + e, v) for e in (-1e-9, 1e-9)],
+                [(u, int(v) + 0.5 + e) for e in (-1e-9, 1e-9)],
+            ):
                 assert abs(np.subtract(*(at_place(heights, centre, *place) for place in near))) < 1e-6
 
 

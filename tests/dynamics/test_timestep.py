@@ -58,7 +58,7 @@ def test_contact_damping_is_a_fraction_of_critical():
     assert contact_damping(0.5, 2.0, 2e-9, np.inf) == pytest.approx(np.sqrt(2.0 * 2e-9))
 
 
-@pytest.mark.parametrize(("element", "least"), [(2.5, 1.0), (5, 0.97), (12, 0.94)])
+@pytest.mark.parametrize(("element", "least"), [(2.5, 1.0), (5, 0.97), (12, 0.93)])
 def test_self_contact_costs_no_step_but_with_large_elements(make_scene, element, least):
     with_it, without = (
         make_scene("flat-stack", *SMALL, f"diaphragms.element_mm={element}", f"solver.self_contact={key}").model
