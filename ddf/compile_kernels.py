@@ -54,6 +54,7 @@ def _compile_phases(contact: bool) -> None:
     from ddf.build import build_scene
     from ddf.case import case_from_dict
     from ddf.dynamics import contacts, mirror, phases
+    from ddf.model import sheet_vectors
     from ddf.output.raster import view_from_above
     from ddf.postprocess import measure
     from ddf.simulate import Simulation
@@ -72,6 +73,9 @@ def _compile_phases(contact: bool) -> None:
         mirror.follow.compile((model, state, work, int64))
         mirror.follow_tension.compile((model, state, int64))
         mirror.follow_speed.compile((model, state, int64))
+        for k in sim.scene.ply_sheets:  # a wrinkle, for all that follows and measures them
+            x = sheet_vectors(sim.scene.model, sim.scene.state.x, k)
+            x[2] += 10.0 * np.exp(-((x[1] / 5.0) ** 2))
         measure(sim.scene)
         view_from_above(sim.scene.state.x[:12].reshape(3, 2, 2), np.ones((1, 1), bool), (0.0, 1.0, 0.0, 1.0), pixels=2)
     else:

@@ -77,18 +77,27 @@ def _measure(
     above = np.zeros(heights.shape)
     values = np.zeros((len(heights), 5))
     for k in range(len(heights)):
-        own = points[k] @ normal[k]
+        own = np.empty(len(places))
+        for p in range(len(places)):
+            own[p] = _dot(points[k, p], normal[k])
         crest, over = _relief(places, heights[k], valid[k], window, threshold)
         crest_own, over_own = _relief(places, own, valid[k], window, threshold)
         if crest < 0 or crest_own < 0:
             continue
         if over_own[crest_own] < over[crest]:
             crest, over = crest_own, over_own
-        above[k] = over
+        for p in range(len(places)):
+            above[k, p] = over[p]
         values[k, 0] = over[crest]
         values[k, 4] = places[crest]
         _span(over, crest, points[k], tangent[k], normal[k], values[k])
     return above, values
+
+
+@njit(cache=True)
+def _dot(a: Array, b: Array) -> float:
+    """Product of two vectors (3,)."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @njit(cache=True)
@@ -115,15 +124,18 @@ def _span(above: Array, crest: int, points: Array, tangent: Array, normal: Array
     Width and arc between the first points at half height on either flank, in space less what lies along the
     crest; area = integral of height by travel in space across the crest.
     """
-    low, arc_low = _half_point(above, points, tangent, crest, -1, 0.5 * above[crest])
-    high, arc_high = _half_point(above, points, tangent, crest, 1, 0.5 * above[crest])
-    chord = high - low
-    values[1] = np.sqrt(max(np.dot(chord, chord) - np.dot(chord, tangent) ** 2, 0.0))
+    low, high, chord, side = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    arc_low = _half_point(above, points, tangent, crest, -1, 0.5 * above[crest], low)
+    arc_high = _half_point(above, points, tangent, crest, 1, 0.5 * above[crest], high)
+    for c in range(3):
+        chord[c] = high[c] - low[c]
+        a, b = (c + 1) % 3, (c + 2) % 3
+        side[c] = normal[a] * tangent[b] - normal[b] * tangent[a]
+    values[1] = np.sqrt(max(_dot(chord, chord) - _dot(chord, tangent) ** 2, 0.0))
     values[2] = arc_low + arc_high
-    side = np.cross(normal, tangent)
     area = 0.0
     for k in range(len(above) - 1):
-        area += 0.5 * (above[k] + above[k + 1]) * np.dot(points[k + 1] - points[k], side)
+        area += 0.5 * (above[k] + above[k + 1]) * (_dot(points[k + 1], side) - _dot(points[k], side))
     values[3] = abs(area)
 
 
@@ -172,19 +184,24 @@ def _feet(places: Array, h: Array, first: int, crest: int, last: int) -> tuple[i
 
 
 @njit(cache=True)
-def _half_point(above: Array, points: Array, tangent: Array, crest: int, way: int, level: float) -> tuple[Array, float]:
-    """Point in space where the flank first falls to `level`, and the arc to it across the crest."""
-    arc = 0.0
+def _half_point(above: Array, points: Array, tangent: Array, crest: int, way: int, level: float, place: Array) -> float:
+    """Point in space where the flank first falls to `level`, into `place`; returns the arc to it across the crest."""
+    arc, share = 0.0, 0.0
     k = crest
+    step = np.zeros(3)
     while 0 < k < len(above) - 1:
-        step = points[k + way] - points[k]
-        length = np.sqrt(max(np.dot(step, step) - np.dot(step, tangent) ** 2, 0.0))
+        for c in range(3):
+            step[c] = points[k + way, c] - points[k, c]
+        length = np.sqrt(max(_dot(step, step) - _dot(step, tangent) ** 2, 0.0))
         if above[k + way] <= level:
             share = (above[k] - level) / (above[k] - above[k + way])
-            return points[k] + share * step, arc + share * length
+            arc += share * length
+            break
         arc += length
         k += way
-    return points[k].copy(), arc
+    for c in range(3):
+        place[c] = points[k, c] + share * step[c]
+    return arc
 
 
 def sample_cubic(values: Array, samples: Array) -> Array:

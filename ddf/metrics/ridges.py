@@ -101,7 +101,7 @@ def _node_ridges(fields: Array, spacing: Array, limit: float) -> tuple[Array, Ar
     bend, du, dv = np.zeros((n, m)), np.zeros((n, m)), np.zeros((n, m))
     for i in range(n):
         for j in range(m):
-            d = fields[:, i, j]
+            d = _derivatives_at(fields, float(i), float(j))
             # the least eigenvalue of the height bounds the curvature: no search where it is small
             if 0.5 * (d[2] + d[4]) - np.hypot(0.5 * (d[2] - d[4]), d[3]) > limit:
                 continue
@@ -176,8 +176,8 @@ def _follow(
     limit = int(4 * (n + m) * max(spacing[0], spacing[1]) / step)
     back = max(int(LOOK_BACK_MM / step), 2)
     line = np.empty((limit, 2))
-    line[0] = start
-    u, v = start
+    u, v = start[0], start[1]
+    line[0, 0], line[0, 1] = u, v
     _, tu, tv = _along(_derivatives_at(fields, u, v))
     tu, tv = sign * tu, sign * tv
     for count in range(1, limit):
@@ -189,7 +189,7 @@ def _follow(
         if bend == 0.0 or size < 0.2 * step or du * tu + dv * tv < 0.5 * size:
             return line[:count].copy()
         u, v = pu, pv
-        line[count] = u, v
+        line[count, 0], line[count, 1] = u, v
         if _turns(line, count, back, spacing):
             return line[: count - back].copy()
         d = _derivatives_at(fields, u, v)
@@ -211,9 +211,12 @@ def _turns(line: Array, count: int, back: int, spacing: Array) -> bool:
     """Whether the last points of a line turn by more than 60 degrees: it goes over to another ridge."""
     if count < 2 * back:
         return False
-    b = (line[count] - line[count - back]) * spacing
-    a = (line[count - back] - line[count - 2 * back]) * spacing
-    return np.sum(a * b) < 0.5 * np.sqrt(np.sum(a * a) * np.sum(b * b))
+    aa = ab = bb = 0.0
+    for c in range(2):
+        b = (line[count, c] - line[count - back, c]) * spacing[c]
+        a = (line[count - back, c] - line[count - 2 * back, c]) * spacing[c]
+        aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
+    return ab < 0.5 * np.sqrt(aa * bb)
 
 
 @njit(cache=True)
