@@ -187,6 +187,6 @@ def test_plane_that_is_normal_to_y():
     whole = scene_of("off", tool={"turn_deg": 90.0}, ply={"offset_mm": [4.0, 0.0]})
     for one in (scene, whole):
         sim = Simulation(one)
-        sim.advance(1000)
+        sim.advance(round(0.031 / one.model.dt))
         sim.close()
     assert largest_difference(whole, scene.whole()) < 0.02

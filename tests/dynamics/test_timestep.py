@@ -30,14 +30,9 @@ def test_damped_limit_is_the_limit_of_the_oscillator(ratio):
 def test_bounds_sum_their_parts():
     bare = ply_omega2(0.5, (0.3, 0.2), (2.0, 1.0), 0.0, 1e-9)
     assert bare == pytest.approx((4 * 0.5 * 1.25 + 16 * (0.3 / 16 + 0.2)) / 1e-9)
-    # half of the shear 2.5 with all of contact, or all of it with the friction springs
-    bending = bare - 2.5e9
-    assert ply_omega2(0.5, (0.3, 0.2), (2.0, 1.0), 3.0, 1e-9) == pytest.approx(bending + 1.25e9 + 6e9)
-    assert ply_omega2(0.5, (0.3, 0.2), (2.0, 1.0), 0.5, 1e-9) == pytest.approx(bending + 2.5e9 + 0.3e9)
+    assert ply_omega2(0.5, (0.3, 0.2), (2.0, 1.0), 3.0, 1e-9) - bare == pytest.approx(6e9)
     skin = diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 0.0)
-    membrane = 32 * 0.96 * 1.5 / 2.5**2
-    assert skin == pytest.approx((membrane + 64 * 1.1 / 2.5**4) / 1.65e-9)
-    assert diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 9.0) - skin == pytest.approx((18 - membrane / 2) / 1.65e-9)
+    assert diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 2.0) - skin == pytest.approx(4.0 / 1.65e-9)
 
 
 def test_plies_get_the_diaphragms_step_and_no_more_mass(make_scene):
@@ -58,7 +53,7 @@ def test_contact_damping_is_a_fraction_of_critical():
     assert contact_damping(0.5, 2.0, 2e-9, np.inf) == pytest.approx(np.sqrt(2.0 * 2e-9))
 
 
-@pytest.mark.parametrize(("element", "least"), [(2.5, 1.0), (5, 0.97), (12, 0.93)])
+@pytest.mark.parametrize(("element", "least"), [(5, 1.0), (12, 0.94)])
 def test_self_contact_costs_no_step_but_with_large_elements(make_scene, element, least):
     with_it, without = (
         make_scene("flat-stack", *SMALL, f"diaphragms.element_mm={element}", f"solver.self_contact={key}").model
