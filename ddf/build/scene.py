@@ -45,7 +45,7 @@ def _whole_scene(case: Case, bare: bool) -> Scene:
     rubber = hyperelastic_material(case, case.diaphragms.material)
     terms = rubber.abaqus_terms
     sheets, laws, tables, tangents = sheet_records(case, stack, terms)
-    scale, masses = areal_masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3, terms, tangents)
+    scale, masses = areal_masses(case, stack, rubber.density_kg_m3 * TONNE_PER_KG_M3, tangents)
     damp_fibres(case, sheets, masses, tangents)
     limit = step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ddf.build.stack import Stack
 from ddf.case import Case
@@ -19,54 +18,25 @@ OWN_STIFFNESS, OWN_DAMPING = 1 / 6, 0.25
 """Stiffness and damping ratio of a diaphragm's contact with itself over those of layers. It comes on top of the layers
 that press on the other face; more would shorten the step of every run, and 0.5 N/mm3 give 0.2 mm under vacuum. A face
 of a ply that touches itself touches nothing else: there it is the layers' stiffness."""
-SHELL_SCALING = 24.0
-"""Mass scaling of shell-membrane plies where none is given."""
 TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
 
 
-def areal_masses(
-    case: Case, stack: Stack, density: float, terms, tangents: list[float]
-) -> tuple[list[float], list[float]]:
-    """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2].
-
-    Where neither a scaling nor a step is given, lattice plies get what their own stable step needs to be that of the
-    diaphragms: less shortens the step, more only makes them slow. Shell-membrane plies, whose fibres are explicit and
-    would need far more, get SHELL_SCALING.
-    """
+def areal_masses(case: Case, stack: Stack, density: float, tangents: list[float]) -> tuple[list[float], list[float]]:
+    """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2]."""
     solver = case.solver
-    skin = solver.diaphragm_mass_scaling * density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
     scales = []
     for number, (ply, material, shear) in enumerate(zip(stack.plies, stack.materials, tangents, strict=True)):
         areal = material.areal_density_gsm * TONNE_PER_GSM_MM2
-        if solver.mass_scaling is not None:
-            scale = solver.mass_scaling
-        elif solver.target_step_s is not None:
+        if solver.target_step_s is not None:
             omega2 = ply_omega2(case, number, ply, material, shear, areal)
             step = solver.step_safety * timestep.damped_limit(math.sqrt(omega2), solver.contact_damping)
-            scale = max(1.0, (solver.target_step_s / step) ** 2)
-        elif case.plies[number].formulation == "shell-membrane":
-            scale = SHELL_SCALING
+            scales.append(max(1.0, (solver.target_step_s / step) ** 2))
         else:
-            scale = _fitting_scale(case, number, stack, terms, shear, (skin, areal))
-        scales.append(scale)
+            scales.append(solver.mass_scaling if solver.mass_scaling is not None else 1.0)
+    skin = solver.diaphragm_mass_scaling * density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
     plies = [m.areal_density_gsm * TONNE_PER_GSM_MM2 * s for m, s in zip(stack.materials, scales, strict=True)]
     return scales, [skin, *plies, skin]
-
-
-def _fitting_scale(case: Case, number: int, stack: Stack, terms, shear: float, masses: tuple[float, float]) -> float:
-    """Mass scaling with which a ply between diaphragms has their stable step; masses of a diaphragm and of the ply."""
-    ply, material, (skin, areal) = stack.plies[number], stack.materials[number], masses
-
-    def ahead(scale: float) -> float:
-        both = [skin, scale * areal, skin]
-        limits = [_diaphragm_limit(case, terms, both), _ply_limit(case, number, ply, material, shear, both, 1)]
-        return math.log(limits[1] / limits[0])
-
-    most = 1e6
-    if ahead(1.0) >= 0.0 or ahead(most) <= 0.0:
-        return 1.0 if ahead(1.0) >= 0.0 else most
-    return float(brentq(ahead, 1.0, most, rtol=1e-6))
 
 
 def ply_omega2(case: Case, number: int, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
@@ -97,42 +67,28 @@ def damp_fibres(case: Case, sheets: np.ndarray, masses: list[float], tangents: l
 
 def step_limit(case: Case, stack: Stack, terms, masses: list[float], tangents: list[float]) -> float:
     """Stable step [s], the least of all sheets, safety included."""
-    sheets = zip(stack.plies, stack.materials, tangents, strict=True)
-    plies = [_ply_limit(case, k, *sheet, masses, k + 1) for k, sheet in enumerate(sheets)]
-    return case.solver.step_safety * min(_diaphragm_limit(case, terms, masses), *plies)
-
-
-def _ply_limit(
-    case: Case, number: int, ply: PlyMesh, material: WovenMaterial, shear: float, masses: list[float], k: int
-) -> float:
-    """Largest stable step [s] of ply `number` of the case; masses of a stack in which it is sheet k."""
-    omega2 = ply_omega2(case, number, ply, material, shear, masses[k])
-    damping = 2.0 * sum(pair_damping(case, masses, k, other) for other in (k - 1, k + 1))
-    if case.plies[number].formulation == "shell-membrane":
-        damping += 2.0 * case.solver.fibre_damping * math.sqrt(omega2) * masses[k]
-    return _damped_limit(omega2, damping / masses[k])
-
-
-def _diaphragm_limit(case: Case, terms, masses: list[float]) -> float:
-    """Largest stable step [s] of the diaphragms; masses of their stack."""
-    solver, d, stiff = case.solver, case.diaphragms, case.solver.contact_stiffness_N_mm3
+    solver, d = case.solver, case.diaphragms
+    stiff = solver.contact_stiffness_N_mm3
+    limits = []
+    for k, (ply, material) in enumerate(zip(stack.plies, stack.materials, strict=True)):
+        omega2 = ply_omega2(case, k, ply, material, tangents[k], masses[k + 1])
+        damping = 2.0 * sum(pair_damping(case, masses, k + 1, other) for other in (k, k + 2))
+        if case.plies[k].formulation == "shell-membrane":
+            damping += 2.0 * case.solver.fibre_damping * math.sqrt(omega2) * masses[k + 1]
+        limits.append((math.sqrt(omega2), damping / masses[k + 1]))
     mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, d.thickness_mm)
-    bending = bending if d.bending else 0.0
-    omega2 = timestep.diaphragm_omega2(mu, d.thickness_mm, bending, masses[0], d.element_mm, stiff)
+    omega2 = timestep.diaphragm_omega2(
+        mu, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff
+    )
     damping = 2.0 * max(pair_damping(case, masses, 0, other) for other in range(1, len(masses)))
-    limit = _damped_limit(omega2, damping / masses[0])
-    if not solver.self_contact:
-        return limit
-    # normal to flanks that touch: bending and contacts, but nothing of the membrane
-    own, own_damping = own_contact(case, masses[0])
-    omega2 = timestep.diaphragm_omega2(0.0, d.thickness_mm, bending, masses[0], d.element_mm, stiff + own)
-    return min(limit, _damped_limit(omega2, (damping + 2.0 * own_damping) / masses[0]))
-
-
-def _damped_limit(omega2: float, rate: float) -> float:
-    """Largest stable step [s] at omega^2 [1/s2] with damping over mass `rate` [1/s]."""
-    omega = math.sqrt(omega2)
-    return float(timestep.damped_limit(omega, rate / (2.0 * omega)))
+    limits.append((math.sqrt(omega2), damping / masses[0]))
+    if solver.self_contact:  # normal to flanks that touch: bending and contacts, but nothing of the membrane
+        own, own_damping = own_contact(case, masses[0])
+        omega2 = timestep.diaphragm_omega2(
+            0.0, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff + own
+        )
+        limits.append((math.sqrt(omega2), (damping + 2.0 * own_damping) / masses[0]))
+    return solver.step_safety * min(timestep.damped_limit(w, c / (2.0 * w)) for w, c in limits)
 
 
 def own_contact(case: Case, mass: float) -> tuple[float, float]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ddf.case.base import Section
+
+DEFAULT_MASS_SCALING = 24.0
 
 
 class Solver(Section):
@@ -16,8 +18,8 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass; left out without target_step_s: what gives plies the stable step of "
-        "the diaphragms (20 to 30 in the shipped cases), shell-membrane plies 24. Either this or target_step_s.",
+        description="Factor on the plies' mass (inferred); left out without target_step_s: 24. "
+        "Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
         default=None,
@@ -26,7 +28,7 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     diaphragm_mass_scaling: float = Field(
-        default=3.0, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
+        default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
     )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
     step_safety: float = Field(default=0.85, gt=0, le=1, description="Step as a fraction of the stable one.")
@@ -82,3 +84,10 @@ class Solver(Section):
     check_interval_steps: int = Field(
         default=50, ge=1, le=1_000_000, description="Steps between two checks of energy and stability."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_scaling(cls, raw: Any) -> Any:
+        if isinstance(raw, dict) and raw.get("mass_scaling") is None and raw.get("target_step_s") is None:
+            return raw | {"mass_scaling": DEFAULT_MASS_SCALING}
+        return raw

@@ -5,11 +5,6 @@ import pytest
 
 from ddf.dynamics.timestep import contact_damping, damped_limit, diaphragm_omega2, ply_omega2
 
-SMALL = (
-    "frame.length_mm=220", "frame.width_mm=180", "plies.0.size_mm=[100,100]", "plies.0.element_mm=5",
-    "diaphragms.element_mm=6",
-)  # fmt: skip
-
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1, 0.5, 1.0])
 def test_damped_limit_is_the_limit_of_the_oscillator(ratio):
@@ -35,28 +30,16 @@ def test_bounds_sum_their_parts():
     assert diaphragm_omega2(0.96, 1.5, 1.1, 1.65e-9, 2.5, 2.0) - skin == pytest.approx(4.0 / 1.65e-9)
 
 
-def test_plies_get_the_diaphragms_step_and_no_more_mass(make_scene):
-    """Without a scaling: a tenth less mass of the plies shortens the step, a tenth more does not lengthen it."""
-    fitted = make_scene("flat-stack", *SMALL)
-    scale = fitted.sheets[1].mass_scaling
-    assert scale > 1.0
-    lighter, heavier = (make_scene("flat-stack", *SMALL, f"solver.mass_scaling={x * scale}") for x in (0.9, 1.1))
-    assert lighter.step_limit < 0.99 * fitted.step_limit
-    assert heavier.step_limit == pytest.approx(fitted.step_limit, rel=0.01)
-    assert make_scene("flat-stack", *SMALL, "plies.0.formulation=shell-membrane").sheets[1].mass_scaling == 24.0
-    given = make_scene("flat-stack", *SMALL, "solver.target_step_s=1e-4").sheets[1].mass_scaling
-    assert given > scale
-
-
 def test_contact_damping_is_a_fraction_of_critical():
     assert contact_damping(0.5, 2.0, 2e-9, 2e-9) == pytest.approx(np.sqrt(2.0 * 1e-9))
     assert contact_damping(0.5, 2.0, 2e-9, np.inf) == pytest.approx(np.sqrt(2.0 * 2e-9))
 
 
-@pytest.mark.parametrize(("element", "least"), [(5, 1.0), (12, 0.94)])
+@pytest.mark.parametrize(("element", "least"), [(5, 1.0), (12, 0.97)])
 def test_self_contact_costs_no_step_but_with_large_elements(make_scene, element, least):
+    small = ("frame.length_mm=220", "frame.width_mm=180", "plies.0.size_mm=[100,100]", "plies.0.element_mm=5")
     with_it, without = (
-        make_scene("flat-stack", *SMALL, f"diaphragms.element_mm={element}", f"solver.self_contact={key}").model
+        make_scene("flat-stack", *small, f"diaphragms.element_mm={element}", f"solver.self_contact={key}").model
         for key in ("true", "false")
     )
     assert least <= with_it.dt / without.dt <= 1.0
