@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from ddf.build.loads import load_path
 from ddf.build.pairs import contact_pairs
 from ddf.build.pools import node_pools, row_blocks
 from ddf.build.rest import state_at_rest
-from ddf.build.rim import no_rims, rim_entries, rim_lists
+from ddf.build.rim import RINGS, no_rims, rim_entries, rim_lists
 from ddf.build.sheets import sheet_records
 from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nominal_height
 from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
@@ -28,19 +29,21 @@ from ddf.scene import Scene, SheetInfo
 FloatArray = NDArray[np.float64]
 
 
-def build_scene(case: Case, bare: bool = False) -> Scene:
+def build_scene(case: Case, rings: int = RINGS) -> Scene:
     """Mesh a case and assemble its model and initial state. Raises MeshError or CaseError.
 
-    With `solver.symmetry` "auto" a scene that is its own mirror image becomes a half model. bare: for problems that
-    hold edges of a ply, grids without rings of nodes around plies (`build.rim`), and any number of cells.
+    With `solver.symmetry` "auto" a scene that is its own mirror image becomes a half model, on grids with a line in the
+    middle. rings: of grid nodes around plies for their rims (`build.rim`); 0 for problems that hold edges of a ply.
     """
-    scene = _whole_scene(case, bare)
-    return scene if case.solver.symmetry == "off" else halve(scene)
+    if case.solver.symmetry == "off":
+        return _whole_scene(case, False, rings)
+    half = halve(_whole_scene(case, True, rings))
+    return half if half.half is not None else replace(_whole_scene(case, False, rings), symmetry=half.symmetry)
 
 
-def _whole_scene(case: Case, bare: bool) -> Scene:
-    """The whole scene of a case."""
-    stack = mesh_stack(case, bare)
+def _whole_scene(case: Case, even: bool, rings: int) -> Scene:
+    """The whole scene of a case; even: whether all grids get an even number of cells along both directions."""
+    stack = mesh_stack(case, even, rings)
     tool_mesh, tool_field = (None, None) if case.tool is None else mesh_tool(case.tool)
     rubber = hyperelastic_material(case, case.diaphragms.material)
     terms = rubber.abaqus_terms

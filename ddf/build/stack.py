@@ -31,13 +31,8 @@ class Stack(NamedTuple):
     thickness: list[float]  # as clamped [mm]
 
 
-def mesh_stack(case: Case, bare: bool = False) -> Stack:
-    """Mesh all sheets of a case, with rings around plies unless bare. Raises MeshError.
-
-    All have even numbers of cells, unless bare: so a tool in the middle finds nodes of all sheets at its apex, one on
-    the other. (With a cell of the ply across a node of the diaphragm both crossed there, as meshes see it, by 0.06 mm.)
-    """
-    even, rings = not bare, 0 if bare else RINGS
+def mesh_stack(case: Case, even: bool = False, rings: int = RINGS) -> Stack:
+    """Mesh all sheets of a case, with even numbers of cells where wanted, rings around plies. Raises MeshError."""
     plies = []
     for ply in case.plies:
         outline, holes, slits = ply.outline_mm(), ply.holes_mm, ply.slits_mm

@@ -64,7 +64,7 @@ def case_scene(
 ) -> Scene:
     """Scene of a case with one rectangular ply, without added mass; `ply` and `tables` add keys to the case's own.
 
-    Its grids are bare.
+    The ply's grid ends at its edges.
     """
     own: Table = {"material": "fabric", "size_mm": list(size_mm), "element_mm": element_mm}
     frame = [max(50.0, side + AROUND_MM) for side in size_mm]
@@ -77,7 +77,7 @@ def case_scene(
     }
     for name, table in tables.items():
         raw[name] = raw.get(name, {}) | table
-    return build_scene(case_from_dict(raw | {"plies": [own | (ply or {})]}), bare=True)
+    return build_scene(case_from_dict(raw | {"plies": [own | (ply or {})]}), rings=0)
 
 
 def ply_scene(

@@ -69,7 +69,7 @@ def test_locked_share_is_the_area_beyond_the_angle(folder, file, tmp_path):
 def test_a_net_that_fails_leaves_what_was_laid(file, tmp_path):
     sharp = [
         "plies.0.size_mm=[300, 300]",
-        "plies.0.element_mm=3",
+        "plies.0.element_mm=4",
         "kinematic.foot_radius_mm=0",
         "output.pictures=false",
     ]

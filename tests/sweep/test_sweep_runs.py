@@ -55,7 +55,7 @@ kinematic.offset_mm = 0.0
 name = "cannot"
 kinematic.offset_mm = 0.0
 plies.0.size_mm = [300.0, 300.0]
-plies.0.element_mm = 3.0
+plies.0.element_mm = 4.0
 kinematic.foot_radius_mm = 0
 [[points]]
 name = "over"
