@@ -17,9 +17,6 @@ from ddf.model import DIAPHRAGM, PRESSURE_BOTTOM, PRESSURE_TOP, PRESSURE_WORK, T
 from ddf.scene import Scene
 
 BATCH = 10  # steps between two looks at how fast the sheets are
-PIECE = 2
-"""Steps over which the work of changing pressures is booked at once. Over 10 of them 1 to 2 % of the work was missed
-where a flat stack is clamped within milliseconds: pressures and volumes both change much in a bounce."""
 REACH_SPEED = 500.0  # mm/s: least relative speed that sleeping cells and resting nodes allow for
 
 
@@ -91,15 +88,11 @@ class Simulation:
         self.work.rest[:] = self._followed
         reach = self._reach_speed(schedule) * model.dt
         self.seek(reach * steps)
-        pressures = schedule[:, [PRESSURE_TOP, PRESSURE_BOTTOM]]
-        piece = steps if np.all(pressures == pressures[:1]) else PIECE
-        for low in range(0, max(steps, 1), max(piece, 1)):
-            part = schedule[low : low + piece]
-            self.team.run(advance, *self.handles, part, self.step, reach)
-            state.clock[0] += len(part)
-            state.clock[1] = self.time_of(state.clock[0])
-            if len(part):
-                self._account_pressure(part)
+        self.team.run(advance, *self.handles, schedule, self.step, reach)
+        state.clock[0] += steps
+        state.clock[1] = self.time_of(state.clock[0])
+        if steps:
+            self._account_pressure(schedule)
 
     def _reach_speed(self, schedule: np.ndarray) -> float:
         """Relative speed that nothing exceeds in this batch [mm/s]: twice today's, and what pressure can add."""
@@ -110,7 +103,7 @@ class Simulation:
         return max(REACH_SPEED, 4.0 * fastest + gain + tool)
 
     def _account_pressure(self, schedule: np.ndarray) -> None:
-        """Work of the pressures over the steps of a schedule: the mean of both ends times the swept volume."""
+        """Work of the pressures over the batch: the mean of both ends times the swept volume."""
         after = self._swept()
         end = self.scene.path.schedule(np.array([self.time]), self.scene.base_z, self.model.dt)
         for k, volume in after.items():
