@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ddf.build.pools import row_blocks
+from ddf.build.blocks import block_edges, row_blocks
 from ddf.build.rest import state_at_rest
 from ddf.build.rim import rim_lists, rim_nodes
 from ddf.contact.patch import patch_centres
@@ -326,8 +326,7 @@ def _mirror_lists(grids: list[_Grid], sheets: np.ndarray, blocks: np.ndarray) ->
     """Ghosts, images, nodes on the plane and bars beyond it, by blocks."""
     ghosts = np.concatenate([g.ghosts + int(s["node"]) for g, s in zip(grids, sheets, strict=True)])
     plane = np.concatenate([g.plane + int(s["node"]) for g, s in zip(grids, sheets, strict=True)])
-    first = np.array([int(sheets[b["sheet"]]["node"] + b["low"] * sheets[b["sheet"]]["cols"]) for b in blocks])
-    edges = np.append(first, np.iinfo(np.int64).max)
+    edges = block_edges(sheets, blocks)
     twins = np.concatenate([g.twins(int(s["node"])) for g, s in zip(grids, sheets, strict=True)])
     twins = twins[np.argsort(twins[:, 0])]
     ghosts = ghosts[np.argsort(ghosts[:, 0])]

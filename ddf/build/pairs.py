@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from ddf.build.pools import BLOCKS_A_SHEET
+from ddf.build.blocks import block_rows
 from ddf.build.stack import Stack
 from ddf.build.step import own_contact, pair_damping
 from ddf.case import Case
@@ -54,8 +54,8 @@ def contact_pairs(case: Case, stack: Stack, masses: list[float], sheets: np.ndar
         exposed.append(follow.ravel())
         places.append(first_places(place))
         n, m = int(sheets[master]["rows"]), int(sheets[master]["cols"])
-        size = max(4, math.ceil(int(sheets[slave]["rows"]) / BLOCKS_A_SHEET))
-        blocks = math.ceil(int(sheets[slave]["rows"]) / size)
+        rows = int(sheets[slave]["rows"])
+        blocks = math.ceil(rows / block_rows(rows))
         first += follow.size
         buffer += 4 * n * m * blocks
         span += n * blocks

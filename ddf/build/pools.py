@@ -1,8 +1,7 @@
-"""What each node, bar and cell of a model carries: masses, areas, widths; and the blocks of rows."""
+"""What each node, bar and cell of a model carries: masses, areas, widths."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,10 @@ from ddf.build.stack import Stack
 from ddf.contact.patch import patch_centres
 from ddf.elements.bending import tangent_weights
 from ddf.mesh.ply import PlyMesh
-from ddf.model import BLOCK, DIAPHRAGM
+from ddf.model import DIAPHRAGM
 
 FloatArray = NDArray[np.float64]
 
-BLOCKS_A_SHEET = 12
 LEAST_NODE = 0.25
 """Least share of a cell whose mass a node of a ply carries. A cut leaves slivers, and a sheet that lies on one
 pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
@@ -80,12 +78,3 @@ def corner_sum(cells: FloatArray) -> FloatArray:
     """Quarter of the cells around each node, (n, m) from (n-1, m-1)."""
     p = np.pad(cells, 1)
     return 0.25 * (p[1:, 1:] + p[:-1, 1:] + p[1:, :-1] + p[:-1, :-1])
-
-
-def row_blocks(sheets: np.ndarray) -> np.ndarray:
-    """Fixed blocks of rows of every sheet: the unit of parallel work and of all sums."""
-    rows = []
-    for k, s in enumerate(sheets):
-        size = max(4, math.ceil(int(s["rows"]) / BLOCKS_A_SHEET))
-        rows += [(k, low, min(low + size, int(s["rows"]))) for low in range(0, int(s["rows"]), size)]
-    return np.array(rows, dtype=BLOCK)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
+from ddf.build.blocks import block_edges
 from ddf.mesh.outline import contains
 from ddf.mesh.ply import PlyMesh
 from ddf.model import RIM
@@ -68,8 +69,7 @@ def rim_lists(rims: list[np.ndarray], sheets: np.ndarray, blocks: np.ndarray) ->
         parts.append(part)
     rim = np.sort(np.concatenate(parts), order=("node", "parent"))
     by_parents = np.sort(rim, order=("parent", "node"))
-    first = [int(sheets[b["sheet"]]["node"] + b["low"] * sheets[b["sheet"]]["cols"]) for b in blocks]
-    edges = np.array([*first, np.iinfo(np.int64).max])
+    edges = block_edges(sheets, blocks)
     return {
         "rim": rim, "rim_first": np.searchsorted(rim["node"], edges),
         "rim_parents": by_parents, "parent_first": np.searchsorted(by_parents["parent"], edges),

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ddf.build.blocks import row_blocks
 from ddf.build.half import halve
 from ddf.build.loads import load_path
 from ddf.build.pairs import contact_pairs
-from ddf.build.pools import node_pools, row_blocks
+from ddf.build.pools import node_pools
 from ddf.build.rest import state_at_rest
 from ddf.build.rim import RINGS, no_rims, rim_entries, rim_lists
 from ddf.build.sheets import sheet_records

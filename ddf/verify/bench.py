@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from ddf.build import state_at_rest
+from ddf.build.blocks import row_blocks
 from ddf.build.pairs import first_places
-from ddf.build.pools import corner_sum, row_blocks
+from ddf.build.pools import corner_sum
 from ddf.build.rim import no_rims, rim_lists
 from ddf.case import HyperelasticMaterial, WovenMaterial
 from ddf.contact.patch import patch_centres
