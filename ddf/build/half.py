@@ -19,6 +19,7 @@ from ddf.build.rim import rim_lists, rim_nodes
 from ddf.contact.patch import patch_centres
 from ddf.contact.rim import sheet_rim
 from ddf.contact.self_contact import CELLS
+from ddf.elements.cells import WEIGHTLESS
 from ddf.half import Half
 from ddf.mesh.distance import DistanceField
 from ddf.model import DIAPHRAGM, PLY, SHELL_PLY, Model, sheet_scalars, sheet_vectors
@@ -36,8 +37,8 @@ TOOL_TOLERANCE_MM = 0.1
 SAME_MM = 1e-6
 """Nodes nearer than this are one."""
 
-GHOST_CELL = 1e-9
-"""Of a cell beyond the plane, for contact to find fabric there that weighs nothing."""
+GHOST_CELL = 0.1 * WEIGHTLESS
+"""Area of a cell beyond the plane [mm2], for contact to find fabric there that weighs nothing."""
 
 
 def halve(scene: Scene) -> Scene:
@@ -210,9 +211,11 @@ class _Grid:
             share = np.where(share > 0.0, 1.0 / np.where(share > 0.0, share, 1.0), 0.0)
         if self.swapped and name in ("bar1", "bar2"):
             share = np.ones_like(share)
+        values = self.cut(getattr(self.whole, name))
         if name == "cell":
-            share = np.where(share > 0.0, share, GHOST_CELL * self._whole_cells())
-        return self.cut(getattr(self.whole, name)) * (share * self.kept if name != "cell" else share).ravel()
+            ghost = np.where(values > 0.0, GHOST_CELL, 0.0) * self._whole_cells().ravel()
+            return np.where(share.ravel() > 0.0, values * share.ravel(), ghost)
+        return values * (share * self.kept).ravel()
 
     def line_mass(self) -> FloatArray:
         """Inverse masses, those of nodes on the plane with a minus sign where lines end there."""

@@ -7,6 +7,7 @@ from numba import njit
 from ddf.dynamics import contacts, mirror
 from ddf.dynamics.work import SCRATCH_ROWS
 from ddf.elements.bending import bending_forces
+from ddf.elements.cells import filled_nodes
 from ddf.elements.fold import fold_forces, fold_lattice_forces
 from ddf.elements.plate import plate_forces
 from ddf.elements.rubber import rubber_forces
@@ -153,19 +154,20 @@ def _kick(model, state, work, row, b, reach, scratch):
     sheet = model.sheets[block.sheet]
     x, v, f = vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet)
     inverse, mass = scalars(model.inverse_mass, sheet), scalars(model.mass, sheet)
-    dt = model.dt
+    cell, dt = scalars(model.cell, sheet), model.dt
     if model.mirror >= 0:
         mirror.let_go(model, state, b)
     if sheet.bed > 0.0:
         contacts.find_bed(model, state, work, row, b, reach)
     square = power = 0.0
     for i in range(block.low, block.high):
+        p, q = filled_nodes(cell, i)
         for c in range(3):
-            p, q = _kick_row(v[c, i], f[c, i], inverse[i], mass[i], damping, dt)
-            square += p
-            power += q
+            done = _kick_row(v[c, i, p:q], f[c, i, p:q], inverse[i, p:q], mass[i, p:q], damping, dt)
+            square += done[0]
+            power += done[1]
             if sheet.kind != PLY:
-                _drift_row(x[c, i], v[c, i], f[c, i], mass[i], dt)
+                _drift_row(x[c, i, p:q], v[c, i, p:q], f[c, i, p:q], mass[i, p:q], dt)
     if sheet.kind == SHELL_PLY and max(sheet.bend1, sheet.bend2) > 0.0:
         director, spin = shell_fields(state.director, sheet, 3), shell_fields(state.spin, sheet, 3)
         pull = shell_fields(state.pull, sheet, 3)
@@ -195,17 +197,18 @@ def drift(model, state, work, row, b):
     if sheet.kind != PLY:
         return
     x, v, f = vectors(state.x, sheet), vectors(state.v, sheet), vectors(state.f, sheet)
-    mass = scalars(model.mass, sheet)
+    mass, cell = scalars(model.mass, sheet), scalars(model.cell, sheet)
     if model.mirror >= 0:
         mirror.stay_on_plane(model, state, b)
     if sheet.bed > 0.0:
         contacts.leave_bed(model, state, work, row, b)
     square = power = 0.0
     for i in range(block.low, block.high):
+        p, q = filled_nodes(cell, i)
         for c in range(3):
-            p, q = _drift_row(x[c, i], v[c, i], f[c, i], mass[i], model.dt)
-            square += p
-            power += q
+            done = _drift_row(x[c, i, p:q], v[c, i, p:q], f[c, i, p:q], mass[i, p:q], model.dt)
+            square += done[0]
+            power += done[1]
     state.ledger[b, FIBRE_WORK] += 0.5 * (square - model.dt * power)
     contacts.pack(model, state, work, b)
 

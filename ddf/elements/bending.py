@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.elements.cells import filled
 from ddf.jit import FAST
 
 TILE = 128
@@ -125,7 +126,7 @@ def bending_forces(x, f, weight, triple1, triple2, sheet, low, high, work):
     x, f (3, n, m); weight (4, n, m) from `tangent_weights`; triple1, triple2 (n, m); work: at least SCRATCH
     numbers, flat.
     """
-    n, m = x.shape[1], x.shape[2]
+    n = x.shape[1]
     k = (
         (sheet.bend1 - sheet.bend_in_plane) / sheet.a1**4, (sheet.bend2 - sheet.bend_in_plane) / sheet.a2**4,
         sheet.bend_in_plane / sheet.a1**4, sheet.bend_in_plane / sheet.a2**4,
@@ -133,8 +134,11 @@ def bending_forces(x, f, weight, triple1, triple2, sheet, low, high, work):
     for i in range(max(low - 1, 0), min(high + 1, n)):
         row = np.uint64(i)
         im, ip = np.uint64(max(i - 1, 0)), np.uint64(min(i + 1, n - 1))
-        for first in range(0, m, TILE):
-            start, count = np.uint64(first), np.uint64(min(TILE, m - first))
+        begin1, end1 = filled(triple1, i, 0.0)
+        begin2, end2 = filled(triple2, i, 0.0)
+        begin, end = min(begin1, begin2), max(end1, end2)
+        for first in range(begin, end, TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, end - first))
             _tile(x, weight, triple1, triple2, row, im, ip, start, count, k, work)
             for c in range(3):
                 if low <= i < high:

@@ -10,10 +10,13 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.jit import FAST
+from ddf.jit import FAST, INLINE
 
 TILE = 128
 """Cells of a row that go through the passes together."""
+
+WEIGHTLESS = 1e-6
+"""Area [mm2] of cells that are there and bear nothing: in half models, beyond the plane."""
 
 # fields of `g`, whose entry t + 1 is cell t between two empty cells
 WIDTH = TILE + 2
@@ -21,6 +24,31 @@ PLUS, MINUS = np.uint64(0), np.uint64(3 * WIDTH)
 ONE, NEXT = np.uint64(1), np.uint64(WIDTH)
 SHARES = 6 * WIDTH
 """Numbers in `g`: (G1 + G2)/2 of three components at PLUS, (G1 - G2)/2 at MINUS."""
+
+
+@njit(**INLINE)
+def filled(values, i, least):
+    """First and last+1 column of row i of an array (n, m) where |value| is over `least`; m, 0 where there is none.
+
+    A ply that lies askew in its grid leaves half of it empty, and in a half model half of what is there bears nothing.
+    """
+    m = values.shape[1]
+    a, b = 0, m
+    while a < m and abs(values[i, a]) <= least:
+        a += 1
+    while b > 0 and abs(values[i, b - 1]) <= least:
+        b -= 1
+    return a, b
+
+
+@njit(**INLINE)
+def filled_nodes(cell, i):
+    """First and last+1 column of row i of the nodes whose cells have any area (n, m); a range that may be empty."""
+    a, b = filled(cell, i, 0.0)
+    if i > 0:
+        before, after = filled(cell, i - 1, 0.0)
+        a, b = min(a, before), max(b, after)
+    return a, min(b + 1, cell.shape[1])
 
 
 @njit(**FAST)

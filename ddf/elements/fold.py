@@ -24,6 +24,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.elements.cells import filled
 from ddf.jit import FAST, INLINE
 
 
@@ -97,22 +98,29 @@ def fold_lattice_forces(x, f, triple1, triple2, a1, a2, modulus, radius, low, hi
         for k in (i - 2, i + 2):
             if k < 0 or k >= n:
                 continue
-            if _any_short(x[0, i], x[1, i], x[2, i], x[0, k], x[1, k], x[2, k], chord):
-                for j in range(m):
-                    width[j] = triple1[(i + k) // 2, j] / a1
-                _push(
-                    x[0, i], x[1, i], x[2, i], x[0, k], x[1, k], x[2, k], f[0, i], f[1, i], f[2, i],
-                    modulus, width, chord,
-                )  # fmt: skip
+            middle = (i + k) // 2
+            p, q = filled(triple1, middle, 0.0)
+            if q == 0:
+                continue
+            a, b = x[:, i, p:q], x[:, k, p:q]
+            if _any_short(a[0], a[1], a[2], b[0], b[1], b[2], chord):
+                for j in range(p, q):
+                    width[j - p] = triple1[middle, j] / a1
+                g = f[:, i, p:q]
+                _push(a[0], a[1], a[2], b[0], b[1], b[2], g[0], g[1], g[2], modulus, width, chord)
     chord[:m] = least_chord(2.0 * a2, radius)
     for i in range(low, high):
-        a, b = x[:, i, : m - 2], x[:, i, 2:]
+        p, q = filled(triple2, i, 0.0)
+        if q == 0:
+            continue
+        p, q = max(p, 1), min(q, m - 1)
+        a, b = x[:, i, p - 1 : q - 1], x[:, i, p + 1 : q + 1]
         if _any_short(a[0], a[1], a[2], b[0], b[1], b[2], chord):
-            for j in range(m - 2):
-                width[j] = triple2[i, j + 1] / a2
-            p, q = f[:, i, : m - 2], f[:, i, 2:]
-            _push(a[0], a[1], a[2], b[0], b[1], b[2], p[0], p[1], p[2], modulus, width, chord)
-            _push(b[0], b[1], b[2], a[0], a[1], a[2], q[0], q[1], q[2], modulus, width, chord)
+            for j in range(p, q):
+                width[j - p] = triple2[i, j] / a2
+            g, h = f[:, i, p - 1 : q - 1], f[:, i, p + 1 : q + 1]
+            _push(a[0], a[1], a[2], b[0], b[1], b[2], g[0], g[1], g[2], modulus, width, chord)
+            _push(b[0], b[1], b[2], a[0], a[1], a[2], h[0], h[1], h[2], modulus, width, chord)
 
 
 def _strut_energy(x: np.ndarray, axis: int, chord: np.ndarray, width: np.ndarray, modulus: float) -> tuple[float, int]:

@@ -148,7 +148,8 @@ def rubber_forces(x, f, dx, dy, sheet, ogden, pressure, low, high, work):
     """
     n, m = x.shape[1], x.shape[2]
     c = m - 1
-    work[:] = 0.0
+    work[24:48, 0] = 0.0
+    work[24:48, m] = 0.0
     a1, a2, h = work[0:3], work[3:6], work[6:9]
     c11, c22, c12, mean, half = work[9, :c], work[10, :c], work[11, :c], work[12, :c], work[13, :c]
     ln1, ln2, s1, s2 = work[14, :c], work[15, :c], work[16, :c], work[17, :c]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
+from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, WEIGHTLESS, add_shares, filled, tangents
 from ddf.jit import FAST
 
 # fields of `w`, the scratch of a tile
@@ -85,8 +85,9 @@ def shear_forces(x, f, cell, table, low, high, work):
     w, g = work[: 6 * TILE], work[6 * TILE : SCRATCH]
     for i in range(max(low - 1, 0), min(high, n - 1)):
         row = np.uint64(i)
-        for first in range(0, m - 1, TILE):
-            start, count = np.uint64(first), np.uint64(min(TILE, m - 1 - first))
+        begin, end = filled(cell, i, WEIGHTLESS)
+        for first in range(begin, min(end, m - 1), TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, min(end, m - 1) - first))
             _sines(x, row, start, count, step, np.float64(last), w)
             _slopes(table, last, count, w)
             _pull(x, cell, row, start, count, w, g)

@@ -28,7 +28,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, add_shares, tangents
+from ddf.elements.cells import MINUS, NEXT, ONE, PLUS, SHARES, TILE, WEIGHTLESS, add_shares, filled, tangents
 from ddf.jit import FAST
 
 SHARE = 0.02
@@ -108,8 +108,9 @@ def squeeze_forces(x, v, f, cell, press, thickness, low, high, work):
     power = 0.0
     for i in range(max(low - 1, 0), min(high, n - 1)):
         row = np.uint64(i)
-        for first in range(0, m - 1, TILE):
-            start, count = np.uint64(first), np.uint64(min(TILE, m - 1 - first))
+        begin, end = filled(cell, i, WEIGHTLESS)
+        for first in range(begin, min(end, m - 1), TILE):
+            start, count = np.uint64(first), np.uint64(min(TILE, min(end, m - 1) - first))
             if not _pressed(press, row, start, count):
                 continue
             done = _factors(x, v, cell, press, 0.5 * thickness, row, start, count, w)

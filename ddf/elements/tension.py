@@ -50,6 +50,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ddf.elements.cells import filled
 from ddf.jit import FAST
 
 LINES = 16
@@ -320,19 +321,25 @@ def pull_kept(x, v, inverse_mass, kept1, kept2, impulse, i, q):
     for k, sign in ((i, impulse), (i - 1, -impulse)):
         if k < 0 or k + 1 >= n:
             continue
+        a, b = filled(kept1, k, 0.0)
+        if b > a:
+            _bar_row(
+                x[0, k, a:b], x[1, k, a:b], x[2, k, a:b], x[0, k + 1, a:b], x[1, k + 1, a:b], x[2, k + 1, a:b],
+                kept1[k, a:b], q[0, a:b], q[1, a:b], q[2, a:b],
+            )  # fmt: skip
+            for c in range(3):
+                _add_row(v[c, i, a:b], q[c, a:b], sign, inverse_mass[i, a:b])
+    a, b = filled(kept2, i, 0.0)
+    b = min(b, m - 1)
+    if b > a:
+        p, r = a + 1, b + 1
         _bar_row(
-            x[0, k], x[1, k], x[2, k], x[0, k + 1], x[1, k + 1], x[2, k + 1], kept1[k], q[0, :m], q[1, :m], q[2, :m]
-        )
+            x[0, i, a:b], x[1, i, a:b], x[2, i, a:b], x[0, i, p:r], x[1, i, p:r], x[2, i, p:r], kept2[i, a:b],
+            q[0, a:b], q[1, a:b], q[2, a:b],
+        )  # fmt: skip
         for c in range(3):
-            _add_row(v[c, i], q[c, :m], sign, inverse_mass[i])
-    y = x[:, i]
-    _bar_row(
-        y[0, : m - 1], y[1, : m - 1], y[2, : m - 1], y[0, 1:], y[1, 1:], y[2, 1:], kept2[i, : m - 1],
-        q[0, : m - 1], q[1, : m - 1], q[2, : m - 1],
-    )  # fmt: skip
-    for c in range(3):
-        _add_row(v[c, i, : m - 1], q[c, : m - 1], impulse, inverse_mass[i, : m - 1])
-        _add_row(v[c, i, 1:], q[c, : m - 1], -impulse, inverse_mass[i, 1:])
+            _add_row(v[c, i, a:b], q[c, a:b], impulse, inverse_mass[i, a:b])
+            _add_row(v[c, i, p:r], q[c, a:b], -impulse, inverse_mass[i, p:r])
 
 
 def tension_energy(x: np.ndarray, bar1: np.ndarray, bar2: np.ndarray, sheet: np.void) -> tuple[float, float]:
