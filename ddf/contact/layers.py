@@ -44,8 +44,8 @@ from numba import njit
 
 from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.contact.patch import first_order, interpolate, spread, weights
-from ddf.contact.quad import add_scaled, part, quad, quad_with, store
-from ddf.jit import FAST
+from ddf.contact.quad import add_scaled, part, quad, quad_with
+from ddf.jit import FAST, INLINE
 
 HARD, HARDENING = 0.2, 3.0
 """Part of the offset beyond which the penalty is stiffer, and how much. Only where the tool bears the stack do sheets
@@ -59,11 +59,10 @@ DEEPEST = 3.0  # a node more than this many offsets beyond contact has been lost
 FARTHEST = 1.0  # a node whose projection lacks more than this, in cells, has been lost too
 NOWHERE = np.int64(2**40)  # first column of an empty span
 
-CHUNK = 64
+CHUNK = 32
 """Awake nodes that go through the passes together."""
 
-ONE, TWO, THREE, FOUR = np.uint64(1), np.uint64(2), np.uint64(3), np.uint64(4)
-STRIDE = np.uint64(4 * CHUNK)
+ONE, FOUR, NEXT = np.uint64(1), np.uint64(4), np.uint64(CHUNK)
 # fields of a chunk: where each begins in `w`
 (
     X, Y, Z,  # slave node [mm]
@@ -78,15 +77,16 @@ STRIDE = np.uint64(4 * CHUNK)
     OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
     FN,  # normal force
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
-) = (np.uint64(k * CHUNK) for k in range(45))  # fmt: skip
-FIELDS = 45
+    SX, SY, SZ, SC, UX, UY, UZ, UC, VX, VY, VZ, VC,  # S, S_1, S_2: place on the surface and cover
+    AX, AY, AZ, CX, CY, CZ,  # S_11, S_22
+) = (np.uint64(k * CHUNK) for k in range(63))  # fmt: skip
+FIELDS = 63
 
 
-def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Scratch of the passes, one row a member of the team."""
     return (
         np.zeros((members, FIELDS * CHUNK)),
-        np.zeros((members, 20 * CHUNK)),
         np.zeros((members, 3, CHUNK), np.int64),
         np.zeros((members, CHUNK), np.uint64),
     )
@@ -172,9 +172,18 @@ def _awake(node, end, rest, place, centre, patch, nodes, w):
     return node, t
 
 
+@njit(**INLINE)
+def _put(w, k, q):
+    """First three components of a quad into the fields from k on."""
+    w[k], w[k + NEXT], w[k + NEXT + NEXT] = part(q, 0), part(q, 1), part(q, 2)
+
+
 @njit(**FAST)
-def _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols):
-    """Copy what the slave nodes bring; the surface at their places, quads S, S_1, S_2, into `surface`."""
+def _fetch(w, patch, nodes, count, x, area, place, slip, y, cols):
+    """Copy what the slave nodes bring, and the surface at their places.
+
+    By fields, not as quads: the loops that go over nodes would have to gather what lies four apart.
+    """
     stride = FOUR * cols
     for t in range(count):
         node = nodes[t]
@@ -185,11 +194,12 @@ def _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols):
         w[SU + t], w[SV + t] = slip[0, node], slip[1, node]
         a, b = weights(w[TU + t]), weights(w[TV + t])
         s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
-        store(surface, FOUR * t, s)
-        store(surface, FOUR * t + STRIDE, su)
-        store(surface, FOUR * t + TWO * STRIDE, sv)
-        store(surface, FOUR * t + THREE * STRIDE, suu)
-        store(surface, FOUR * t + FOUR * STRIDE, svv)
+        _put(w, SX + t, s)
+        _put(w, UX + t, su)
+        _put(w, VX + t, sv)
+        _put(w, AX + t, suu)
+        _put(w, CX + t, svv)
+        w[SC + t], w[UC + t], w[VC + t] = part(s, 3), part(su, 3), part(sv, 3)
 
 
 @njit(**FAST)
@@ -209,19 +219,17 @@ def _fetch_rates(w, patch, nodes, count, v, y, cols):
 
 
 @njit(**FAST)
-def _tangents(surface, t):
+def _tangents(w, t):
     """S_1 and S_2 of node t of a chunk."""
-    k, l = FOUR * t + STRIDE, FOUR * t + STRIDE + STRIDE
-    return surface[k], surface[k + ONE], surface[k + TWO], surface[l], surface[l + ONE], surface[l + TWO]
+    return w[UX + t], w[UY + t], w[UZ + t], w[VX + t], w[VY + t], w[VZ + t]
 
 
 @njit(**FAST)
-def _project(w, surface, count, end_u, end_v, sign, offset):
+def _project(w, count, end_u, end_v, sign, offset):
     """One Newton step of the projection of all nodes of a chunk: places, normals, gaps."""
     for t in range(count):
-        k = FOUR * t
-        ux, uy, uz, vx, vy, vz = _tangents(surface, t)
-        rx, ry, rz = w[X + t] - surface[k], w[Y + t] - surface[k + ONE], w[Z + t] - surface[k + TWO]
+        ux, uy, uz, vx, vy, vz = _tangents(w, t)
+        rx, ry, rz = w[X + t] - w[SX + t], w[Y + t] - w[SY + t], w[Z + t] - w[SZ + t]
         guu = ux * ux + uy * uy + uz * uz
         gvv = vx * vx + vy * vy + vz * vz
         guv = ux * vx + uy * vy + uz * vz
@@ -233,9 +241,8 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         il = np.sqrt(inv)
         nx, ny, nz = (uy * vz - uz * vy) * il, (uz * vx - ux * vz) * il, (ux * vy - uy * vx) * il
         d = rx * nx + ry * ny + rz * nz
-        p, q = k + THREE * STRIDE, k + FOUR * STRIDE
-        bu = abs(d * (nx * surface[p] + ny * surface[p + ONE] + nz * surface[p + TWO]))
-        bv = abs(d * (nx * surface[q] + ny * surface[q + ONE] + nz * surface[q + TWO]))
+        bu = abs(d * (nx * w[AX + t] + ny * w[AY + t] + nz * w[AZ + t]))
+        bv = abs(d * (nx * w[CX + t] + ny * w[CY + t] + nz * w[CZ + t]))
         auu, avv = guu + bu, gvv + bv
         step = 1.0 / (auu * avv - guv * guv + 1e-30)
         su = min(max((avv * ru - guv * rv) * step, -0.5), 0.5)
@@ -248,7 +255,7 @@ def _project(w, surface, count, end_u, end_v, sign, offset):
         w[NY + t] = ny
         w[NZ + t] = nz
         w[D + t] = d
-        cover = min(1.0, max(0.0, surface[k + THREE]))
+        cover = min(1.0, max(0.0, w[SC + t]))
         fade = cover * cover * (3.0 - 2.0 * cover)
         w[COVER + t] = cover
         w[AREA + t] *= fade
@@ -292,12 +299,12 @@ def _settle(w, nodes, count, place, slip, rest, rows, cols, deepest, inverse_rea
 
 
 @njit(**FAST)
-def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
+def _press(w, count, sign, mu, stiffness, hard, damping, slow, dt):
     """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
     inverse_dt = 1.0 / dt
     for t in range(count):
-        ux, uy, uz, vx, vy, vz = _tangents(surface, t)
+        ux, uy, uz, vx, vy, vz = _tangents(w, t)
         guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
         nx, ny, nz, d = w[NX + t], w[NY + t], w[NZ + t], w[D + t]
         wx, wy, wz = w[WX + t], w[WY + t], w[WZ + t]
@@ -353,7 +360,7 @@ def _press(w, surface, count, sign, mu, stiffness, hard, damping, slow, dt):
         cover = max(w[COVER + t], 1e-30)
         edge = cover < WHOLE_COVER and w[AREA + t] > 0.0
         slope = -stored * 6.0 * (1.0 - cover) / (cover * (3.0 - 2.0 * cover)) if edge else 0.0
-        eu, ev = slope * surface[FOUR * t + STRIDE + THREE], slope * surface[FOUR * t + STRIDE + STRIDE + THREE]
+        eu, ev = slope * w[UC + t], slope * w[VC + t]
         cu, cv = (gvv * eu - guv * ev) * inv, (guu * ev - guv * eu) * inv
         tx, ty, tz = tx + cu * ux + cv * vx, ty + cu * uy + cv * vy, tz + cu * uz + cv * vz
         fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
@@ -396,19 +403,19 @@ def _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)
 
 @njit(**FAST)
 def _chunk(
-    w, surface, patch, nodes, count, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, buffer, span, pair,
+    w, patch, nodes, count, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, buffer, span, pair,
     reach, dt, out,
 ):  # fmt: skip
     """All passes over one chunk; arguments as in `layer_forces`, grids of nodes and quads made flat."""
     end_u, end_v = np.float64(rows), np.float64(cols)
-    _fetch(w, surface, patch, nodes, count, x, area, place, slip, y, cols)
-    _project(w, surface, count, end_u, end_v, pair.sign, pair.offset)
+    _fetch(w, patch, nodes, count, x, area, place, slip, y, cols)
+    _project(w, count, end_u, end_v, pair.sign, pair.offset)
     deepest = -DEEPEST * pair.offset
     if _settle(w, nodes, count, place, slip, rest, end_u, end_v, deepest, 1.0 / reach) > 0:
         _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
         hard = HARD * pair.offset
-        sums = _press(w, surface, count, pair.sign, pair.friction, pair.stiffness, hard, pair.damping, slow, dt)
+        sums = _press(w, count, pair.sign, pair.friction, pair.stiffness, hard, pair.damping, slow, dt)
         for k in range(4):
             out[k] += sums[k]
         _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)
@@ -426,7 +433,7 @@ def layer_forces(
     centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
     of the last step; slip (2, n, m) [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes
     that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
-    step [mm]; scratch = (w, surface, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
+    step [mm]; scratch = (w, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
     now, friction and damping loss of this step [N mm].
     """
     size = xs.shape[1] * xs.shape[2]
@@ -435,12 +442,12 @@ def layer_forces(
     rest, area, normal = rest.reshape(size), area.reshape(size), normal.reshape(size)
     y, rates, forces = xm.reshape(xm.size), vm.reshape(vm.size), buffer.reshape(buffer.size)
     rows, cols = np.uint64(centre.shape[0]), np.uint64(centre.shape[1])
-    w, surface, patch, nodes = scratch
+    w, patch, nodes = scratch
     node, end = np.uint64(low * xs.shape[2]), np.uint64(high * xs.shape[2])
     while node < end:
         node, t = _awake(node, end, rest, place, centre, patch, nodes, w)
         if t > np.uint64(0):
             _chunk(
-                w, surface, patch, nodes, t, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, forces,
+                w, patch, nodes, t, x, v, f, normal, area, y, rates, rows, cols, place, slip, rest, forces,
                 span, pair, reach, dt, out,
             )  # fmt: skip

@@ -110,7 +110,7 @@ def layers(model, state, work, member, b, dt, reach):
     out[:] = 0.0
     normal = scalars(work.normal, model.sheets[block.sheet])
     normal[block.low : block.high] = 0.0
-    scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member], work.chunks[3][member])
+    scratch = (work.chunks[0][member], work.chunks[1][member], work.chunks[2][member])
     for k in range(model.pairs.shape[0]):
         pair = model.pairs[k]
         if pair.slave != block.sheet or work.idle[k]:

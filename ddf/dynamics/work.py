@@ -29,7 +29,7 @@ class Work(NamedTuple):
     normal: np.ndarray  # (N,) normal contact forces on slaves [N]
     buffers: np.ndarray  # forces on masters, one (N, M, 4) a pair and slave block
     spans: np.ndarray  # (..., 2) columns written by patches centred in each row of each buffer
-    chunks: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
+    chunks: tuple[np.ndarray, np.ndarray, np.ndarray]  # from `contact.layers.chunk_scratch`
     sums: np.ndarray  # (members, 4)
     carry: np.ndarray  # (blocks, widest + 2, PRESS) row of the next block, from the tool's contact
     carried: np.ndarray  # (blocks,) bool: whether it holds anything
