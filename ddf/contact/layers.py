@@ -29,6 +29,13 @@ fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the 
 ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
 30 m/s (seen). One that is far away rests for as many
 steps as it needs at the given reach to come near.
+
+A node that did not touch and is found deep (its projection failed for some steps, or a sheet has been pressed through
+another and comes back) did no work to get there. With all its depth at once the penalty threw it out: in a stack
+crushed on a ridge such nodes brought in more energy than the damping took, and it never came to rest. So the depth that
+g stands for grows no faster than twice the rate and `GROWTH_S` allow, until it is the whole depth; what the springs
+gain by growing is booked with the contact damping, like that of any contact that begins within a step.
+
 Forces on the master go to one buffer a block of slave rows; the buffers are summed in a fixed order, so the
 result does not depend on the number of threads.
 
@@ -52,6 +59,9 @@ HARD, HARDENING = 0.2, 3.0
 come so deep: tension of the fibres presses them on ridges and apexes with some MPa. There the tool's implicit
 contact adds to the mass that the stiffness acts on."""
 
+GROWTH_S = 5e-3
+"""Time [s] in which the depth of a contact that is found deep, not come to, grows by the offset."""
+
 WHOLE_COVER = 1.0 - 1e-9  # weights add up to 1 but for rounding
 LONGEST_REST = 8
 UNKNOWN = 1.0e30  # gap of a node that rests
@@ -69,7 +79,7 @@ ONE, FOUR, NEXT = np.uint64(1), np.uint64(4), np.uint64(CHUNK)
     U0, V0, TU, TV,  # its place at the start, and from the patch's centre
     AREA, WHOLE, SU, SV,  # area (0: does not touch), area in any case, slip along S_1 and across
     COVER,  # s
-    BEFORE,  # depth of the last step, 0 if it did not touch
+    BEFORE,  # depth taken in the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
     GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
@@ -298,11 +308,19 @@ def _settle(w, nodes, count, place, slip, rest, rows, cols, deepest, inverse_rea
     return touching
 
 
+@njit(**INLINE)
+def _spring(k, depth, hard):
+    """Force of the penalty at a depth, and what it stores."""
+    excess = max(0.0, depth - hard)
+    force = k * (depth + (HARDENING - 1.0) * excess)
+    return force, 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
+
+
 @njit(**FAST)
-def _press(w, count, sign, mu, stiffness, hard, damping, slow, dt):
+def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
     """Forces and new slips of all nodes of a chunk; returns the four sums of `layer_forces`."""
     normal = tangential = rubbed = damped = 0.0
-    inverse_dt = 1.0 / dt
+    inverse_dt, hard, growth = 1.0 / dt, HARD * offset, offset * dt / GROWTH_S
     for t in range(count):
         ux, uy, uz, vx, vy, vz = _tangents(w, t)
         guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
@@ -310,10 +328,11 @@ def _press(w, count, sign, mu, stiffness, hard, damping, slow, dt):
         wx, wy, wz = w[WX + t], w[WY + t], w[WZ + t]
         k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
         rate = sign * (nx * wx + ny * wy + nz * wz)
-        depth = max(0.0, -w[GAP + t])
-        excess = max(0.0, depth - hard)
-        spring = k * (depth + (HARDENING - 1.0) * excess)
-        stored = 0.5 * k * (depth * depth + (HARDENING - 1.0) * excess * excess)
+        # no deeper than the last step's depth and the rate can account for
+        before, whole = w[BEFORE + t], max(0.0, -w[GAP + t])
+        depth = min(whole, before + growth + 2.0 * dt * max(0.0, -rate))
+        w[GAP + t] = -depth
+        spring, stored = _spring(k, depth, hard)
         fn = max(0.0, spring - c * rate)
         # slip rate with lower, then upper components; the spring's slip if nothing gave way
         ru = wx * ux + wy * uy + wz * uz + d * w[BU + t]
@@ -345,13 +364,12 @@ def _press(w, count, sign, mu, stiffness, hard, damping, slow, dt):
         opened = stiffness * (w[WHOLE + t] - w[AREA + t]) if w[BEFORE + t] > 0.0 else 0.0
         rubbed += 0.5 * TANGENTIAL * opened * across
         # the spring's force is taken to act through all of the step in which contact begins or ends
-        before = w[BEFORE + t]
-        more = max(0.0, before - hard)
-        held_before = opened * (before + (HARDENING - 1.0) * more)
-        left = 0.5 * opened * (before * before + (HARDENING - 1.0) * more * more)
-        damped += left * inverse_dt - 0.5 * held_before * rate
-        begun = 1.0 if before == 0.0 else 0.0
-        damped -= begun * (0.5 * spring * rate + stored * inverse_dt)
+        pull, left = _spring(opened, before, hard)
+        damped += left * inverse_dt - 0.5 * pull * rate
+        # the same where its depth grows by itself
+        pull, left = _spring(k, before, hard)
+        abrupt = 1.0 if before == 0.0 or depth < whole else 0.0
+        damped -= abrupt * (0.5 * (spring + pull) * rate + (stored - left) * inverse_dt)
         # the viscous force of the last step worked on the mean of the rates before and after it
         damped -= 0.5 * w[OLD_DRAG + t] * (w[OLD_RATE + t] + rate)
         w[RATE + t] = rate
@@ -385,6 +403,7 @@ def _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)
         node = nodes[t]
         slip[0, node] = w[SU + t]
         slip[1, node] = w[SV + t]
+        place[2, node] = w[GAP + t]
         place[3, node] = w[RATE + t]
         place[4, node] = w[DRAG + t]
         fx, fy, fz = w[FX + t], w[FY + t], w[FZ + t]
@@ -414,8 +433,7 @@ def _chunk(
     if _settle(w, nodes, count, place, slip, rest, end_u, end_v, deepest, 1.0 / reach) > 0:
         _fetch_rates(w, patch, nodes, count, v, rates, cols)
         slow = 1.0 / (1.0 + 0.5 * pair.damping * dt / pair.mass)  # damping acts on mid-step velocities
-        hard = HARD * pair.offset
-        sums = _press(w, count, pair.sign, pair.friction, pair.stiffness, hard, pair.damping, slow, dt)
+        sums = _press(w, count, pair.sign, pair.friction, pair.stiffness, pair.offset, pair.damping, slow, dt)
         for k in range(4):
             out[k] += sums[k]
         _scatter(w, patch, nodes, count, f, normal, place, slip, buffer, span, cols)

@@ -69,9 +69,9 @@ class Fold:
         return f
 
     def settle(self, x, rounds=20):
-        """Converge the projection; springs are unstretched there."""
+        """Converge the projection; springs are unstretched there. Long steps: depths are whole."""
         for _ in range(rounds):
-            self.forces(x)
+            self.forces(x, None, 1.0)
             for slip in self.slips:
                 slip[:] = 0.0
         return self

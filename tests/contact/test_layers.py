@@ -121,6 +121,29 @@ def test_row_blocks_of_the_slave_do_not_change_forces():
     assert np.abs(a[1] - b[1]).max() < 1e-14 * np.abs(a[1]).max()
 
 
+def test_a_contact_found_deep_comes_in_slowly_and_its_energy_is_booked():
+    """Free nodes half an offset deep in a held master, damped, until they are out; the ledger closes."""
+    xm, height, mass, dt = _flat_master(), 0.5, 5e-9, 1e-6
+    xs, vs, still = _nodes(height=height), np.zeros_like(_nodes()), np.zeros_like(xm)
+    scene = t.Layers(xs, xm, 20.0, t.make_pair(damping=1e-5))
+    whole = t.Layers(xs, xm, 20.0, scene.pair).settle(xs, xm).forces(xs, xm)[0][2, 0, 0]
+    first = scene.forces(xs, xm, dt)[0][2, 0, 0]
+    assert 0.0 < first < 1e-3 * whole
+    work = lost = fastest = 0.0
+    for _ in range(20_000):
+        f = scene.forces(xs, xm, dt, rates=(vs, still))[0]
+        lost += scene.out[3]
+        work += 0.5 * (f * vs).sum() * dt
+        vs = vs + dt * f / mass
+        work += 0.5 * (f * vs).sum() * dt
+        xs, fastest = xs + dt * vs, max(fastest, vs[2, 0, 0])
+    assert xs[2, 0, 0] > 1.0 - 1e-6
+    at_once = height**2 + 2.0 * 0.3**2  # energy of a node with all of the penalty from the first step on
+    assert 0.5 * mass * fastest**2 < 0.1 * at_once
+    assert scene.out[0] == pytest.approx(0.0, abs=1e-9)
+    assert work + lost == pytest.approx(0.0, abs=0.02 * work), (work, lost)
+
+
 def test_open_gaps_have_no_force_and_lose_their_slip():
     xs, xm = t.curved_scene(np.random.default_rng(7))
     xs[2] += 1.0

@@ -41,9 +41,9 @@ class Layers:
         self.out = np.zeros(4)
 
     def settle(self, xs, xm, rounds=12):
-        """Converge the projection; springs are unstretched there, and nodes at rest."""
+        """Converge the projection; springs are unstretched there, and nodes at rest. Long steps: depths are whole."""
         for _ in range(rounds):
-            self.forces(xs, xm)
+            self.forces(xs, xm, 1.0)
             self.slip[:] = 0.0
         return self
 
