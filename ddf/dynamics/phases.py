@@ -85,7 +85,7 @@ def internal(model, state, work, row, b, scratch):
         dy = model.lines[sheet.line + sheet.rows - 1 : sheet.line + sheet.rows + sheet.cols - 2]
         if model.mirror >= 0:
             mirror.set_aside(model, state, work, b)
-        rubber_forces(x, f, dx, dy, sheet, model.ogden, row[sheet.face], low, high, w)
+        rubber_forces(x, f, dx, dy, sheet, model.ogden, row[sheet.face], low, high, scratch)
         if sheet.rigidity > 0.0:
             plate_forces(x, f, dx, dy, sheet.rigidity, low, high, w)
         if sheet.fold_radius > 0.0:

@@ -11,7 +11,7 @@ from ddf.contact.layers import NOWHERE, chunk_scratch
 from ddf.contact.summit import PUSH
 from ddf.contact.tool import point_scratch
 from ddf.contact.tool_point import PRESS
-from ddf.elements import bending, shear, squeeze
+from ddf.elements import bending, rubber, shear, squeeze
 from ddf.elements.shell_membrane import membrane, shell
 from ddf.elements.tension import LINES, line_scratch
 from ddf.model import PLY, Model, sheet_scalars
@@ -61,7 +61,7 @@ def make_work(model: Model, members: int) -> Work:
         buffers = max(buffers, int(pair["buffer"]) + 4 * n * m * blocks)
         spans = max(spans, int(pair["span"]) + n * blocks)
     bundles = [_bundles(model, family) for family in (1, 2)]
-    tiled = (bending, shear, squeeze, membrane, shell)
+    tiled = (bending, rubber, shear, squeeze, membrane, shell)
     longest = int(max(model.sheets["rows"].max(), model.sheets["cols"].max()))
     bottom, mirrored = model.sheets[0], len(model.ghosts) + len(model.plane)
     return Work(

@@ -23,26 +23,43 @@ from numba import njit
 
 from ddf.jit import FAST, INLINE
 
+STRIP = 64
+"""Cells that are worked on together, a multiple of what fits into vector registers."""
+
+WIDTH = STRIP + 8
+# fields of a strip of cells: where each begins in `w`. Constant distances in one array: loops over rows of twenty
+# arrays take as long to find out that none overlaps another as for the cells.
+(
+    A1X, A1Y, A1Z, A2X, A2Y, A2Z, HX, HY, HZ,  # mean tangents, twist
+    C11, C22, C12, MEAN, HALF, LN1, LN2, S1, S2,  # C, half sum and difference of its principal values, their logarithms
+    K11, K22, K12, G1, G2, TWIST,  # force coefficients
+) = (np.uint64(k * WIDTH) for k in range(24))  # fmt: skip
+# what a cell gives to its corners, of one component: where each begins in a third of a buffer; cell t at place t + 1
+PLUS, MINUS, EVEN, ODD = (np.uint64(k * WIDTH) for k in range(4))
+THIRD, BUFFER = 4 * WIDTH, 12 * WIDTH
+ONE = np.uint64(1)
+SCRATCH = 24 * WIDTH + 2 * BUFFER
+"""Numbers in `work`."""
+
+
+@njit(**INLINE)
+def _mean(xa, xb, j, w, k):
+    """Mean tangents and twist of cell j, one component into fields from k on; xa row i, xb row i+1."""
+    t = np.uint64(j)
+    p = xb[j + 1] - xa[j]
+    q = xb[j] - xa[j + 1]
+    w[k + A1X + t] = 0.5 * (p + q)
+    w[k + A2X + t] = 0.5 * (p - q)
+    w[k + HX + t] = xa[j] - xb[j] - xa[j + 1] + xb[j + 1]
+
 
 @njit(**FAST)
-def _means(xa, xb, a1, a2, h):
-    """Mean tangents and twist of a row of cells, one component: xa row i, xb row i+1."""
-    for j in range(a1.shape[0]):
-        p = xb[j + 1] - xa[j]
-        q = xb[j] - xa[j + 1]
-        a1[j] = 0.5 * (p + q)
-        a2[j] = 0.5 * (p - q)
-        h[j] = xa[j] - xb[j] - xa[j + 1] + xb[j + 1]
-
-
-@njit(**FAST)
-def _metric(a1, a2, dx, dy, c11, c22, c12):
-    """C of a row of cells; a1, a2 (3, c)."""
-    for j in range(c11.shape[0]):
-        ix, iy = 1.0 / dx, 1.0 / dy[j]
-        c11[j] = (a1[0, j] * a1[0, j] + a1[1, j] * a1[1, j] + a1[2, j] * a1[2, j]) * ix * ix
-        c22[j] = (a2[0, j] * a2[0, j] + a2[1, j] * a2[1, j] + a2[2, j] * a2[2, j]) * iy * iy
-        c12[j] = (a1[0, j] * a2[0, j] + a1[1, j] * a2[1, j] + a1[2, j] * a2[2, j]) * ix * iy
+def _means(xa, ya, za, xb, yb, zb, w, count):
+    """Mean tangents and twist of a strip of cells."""
+    for j in range(count):
+        _mean(xa, xb, j, w, A1X)
+        _mean(ya, yb, j, w, A1Y)
+        _mean(za, zb, j, w, A1Z)
 
 
 @njit(**INLINE)
@@ -67,76 +84,117 @@ def _exp(y):
 
 
 @njit(**FAST)
-def _principal(c11, c22, c12, mean, half, ln1, ln2):
-    """Half sum and half difference of the principal values of C, and their logarithms."""
-    for j in range(c11.shape[0]):
-        m = 0.5 * (c11[j] + c22[j])
-        d = 0.5 * (c11[j] - c22[j])
-        r = np.sqrt(d * d + c12[j] * c12[j] + 1e-12 * m * m)
-        mean[j] = m
-        half[j] = r
-        ln1[j] = _ln(m + r)
-        ln2[j] = _ln(max(m - r, 1e-3 * m))
+def _principal(w, count, dx, dy):
+    """C and the principal values of a strip of cells."""
+    ix = 1.0 / dx
+    for t in range(count):
+        iy = 1.0 / dy[t]
+        ax, ay, az, bx, by, bz = w[A1X + t], w[A1Y + t], w[A1Z + t], w[A2X + t], w[A2Y + t], w[A2Z + t]
+        c11 = (ax * ax + ay * ay + az * az) * ix * ix
+        c22 = (bx * bx + by * by + bz * bz) * iy * iy
+        c12 = (ax * bx + ay * by + az * bz) * ix * iy
+        m = 0.5 * (c11 + c22)
+        d = 0.5 * (c11 - c22)
+        r = np.sqrt(d * d + c12 * c12 + 1e-12 * m * m)
+        w[C11 + t], w[C22 + t], w[C12 + t] = c11, c22, c12
+        w[MEAN + t], w[HALF + t] = m, r
+        w[LN1 + t], w[LN2 + t] = _ln(m + r), _ln(max(m - r, 1e-3 * m))
+        w[S1 + t], w[S2 + t] = 0.0, 0.0
 
 
 @njit(**FAST)
-def _add_ogden(ln1, ln2, mu, alpha, s1, s2):
+def _add_ogden(w, count, mu, alpha):
     """Add one Ogden pair to l_i^2 times the principal stresses s_i [MPa]."""
     c = 2.0 * mu / alpha
     a = 0.5 * alpha
-    for j in range(ln1.shape[0]):
-        p1 = _exp(a * ln1[j])
-        p2 = _exp(a * ln2[j])
+    for t in range(count):
+        p1 = _exp(a * w[LN1 + t])
+        p2 = _exp(a * w[LN2 + t])
         p3 = 1.0 / (p1 * p2)
-        s1[j] += c * (p1 - p3)
-        s2[j] += c * (p2 - p3)
+        w[S1 + t] += c * (p1 - p3)
+        w[S2 + t] += c * (p2 - p3)
 
 
 @njit(**FAST)
-def _stresses(s1, s2, mean, half, c11, c22, c12, dx, dy, t, k11, k22, k12):
-    """Force coefficients A t S_ab / (dx_a dx_b) from the principal values: S = b0 I + b1 C."""
-    for j in range(s1.shape[0]):
-        p = s1[j] / (mean[j] + half[j])
-        q = s2[j] / max(mean[j] - half[j], 1e-3 * mean[j])
-        b1 = (p - q) / (2.0 * half[j])
-        b0 = p - b1 * (mean[j] + half[j])
-        k11[j] = t * (b0 + b1 * c11[j]) * dy[j] / dx
-        k22[j] = t * (b0 + b1 * c22[j]) * dx / dy[j]
-        k12[j] = t * b1 * c12[j]
+def _coefficients(w, count, dx, dy, thickness, hourglass, rigidity):
+    """A t S_ab / (dx_a dx_b) from the principal values, S = b0 I + b1 C; of a1.h and a2.h, dU/d(a.h); of h."""
+    over = 1.0 / dx
+    over4 = over * over * over * over
+    for t in range(count):
+        across, mean, half = dy[t], w[MEAN + t], w[HALF + t]
+        p = w[S1 + t] / (mean + half)
+        q = w[S2 + t] / max(mean - half, 1e-3 * mean)
+        b1 = (p - q) / (2.0 * half)
+        b0 = p - b1 * (mean + half)
+        over_y = 1.0 / across
+        w[K11 + t] = thickness * (b0 + b1 * w[C11 + t]) * across * over
+        w[K22 + t] = thickness * (b0 + b1 * w[C22 + t]) * dx * over_y
+        w[K12 + t] = thickness * b1 * w[C12 + t]
+        area = dx * across * hourglass / 12.0
+        hx, hy, hz = w[HX + t], w[HY + t], w[HZ + t]
+        square = over_y * over_y
+        w[G1 + t] = area * (w[A1X + t] * hx + w[A1Y + t] * hy + w[A1Z + t] * hz) * over4
+        w[G2 + t] = area * (w[A2X + t] * hx + w[A2Y + t] * hy + w[A2Z + t] * hz) * square * square
+        w[TWIST + t] = rigidity * over * over_y  # 2 D (1 - nu) |h|^2 / 2 / (dx dy)^2 A, nu = 1/2
 
 
-@njit(**FAST)
-def _hourglass(a1, a2, h, dx, dy, modulus, g1, g2):
-    """Coefficients of a1.h and a2.h: dU/d(a.h)."""
-    for j in range(g1.shape[0]):
-        area = dx * dy[j] * modulus / 12.0
-        g1[j] = area * (a1[0, j] * h[0, j] + a1[1, j] * h[1, j] + a1[2, j] * h[2, j]) / dx**4
-        g2[j] = area * (a2[0, j] * h[0, j] + a2[1, j] * h[1, j] + a2[2, j] * h[2, j]) / dy[j] ** 4
+@njit(**INLINE)
+def _give(w, t, out, o, a1, a2, h, cross1, cross2, cross):
+    """Shares of the four corners, one component; cross...: pressure times the cross products of a1, a2 and h.
 
-
-@njit(**FAST)
-def _cell_forces(a1, a2, h, ya1, za1, ya2, za2, yh, zh, k11, k22, k12, g1, g2, twist, p, plus, minus, even, odd):
-    """Shares of the four corners, one component; y, z are the next two components for the cross products.
-
-    plus = (G1 + G2)/2, minus = (G1 - G2)/2 with G_a = -dU/da_a; odd = -dU/dh; even = p a1 x a2 / 4.
+    PLUS = (G1 + G2)/2, MINUS = (G1 - G2)/2 with G_a = -dU/da_a; ODD = -dU/dh; EVEN = p a1 x a2 / 4.
     """
-    for j in range(plus.shape[0]):
-        e1 = -(k11[j] * a1[j] + k12[j] * a2[j] + g1[j] * h[j])
-        e2 = -(k12[j] * a1[j] + k22[j] * a2[j] + g2[j] * h[j])
-        e1 += p * (1.0 / 12.0) * (ya1[j] * zh[j] - za1[j] * yh[j])
-        e2 += p * (1.0 / 12.0) * (yh[j] * za2[j] - zh[j] * ya2[j])
-        plus[j] = 0.5 * (e1 + e2)
-        minus[j] = 0.5 * (e1 - e2)
-        even[j] = p * 0.25 * (ya1[j] * za2[j] - za1[j] * ya2[j])
-        odd[j] = -(g1[j] * a1[j] + g2[j] * a2[j] + twist[j] * h[j])
+    k11, k22, k12, g1, g2 = w[K11 + t], w[K22 + t], w[K12 + t], w[G1 + t], w[G2 + t]
+    e1 = (1.0 / 12.0) * cross1 - (k11 * a1 + k12 * a2 + g1 * h)
+    e2 = (1.0 / 12.0) * cross2 - (k12 * a1 + k22 * a2 + g2 * h)
+    place = np.uint64(o) + t + ONE
+    out[place + PLUS] = 0.5 * (e1 + e2)
+    out[place + MINUS] = 0.5 * (e1 - e2)
+    out[place + EVEN] = 0.25 * cross
+    out[place + ODD] = -(g1 * a1 + g2 * a2 + w[TWIST + t] * h)
 
 
 @njit(**FAST)
-def _gather(f, plus0, minus0, even0, odd0, plus1, minus1, even1, odd1):
-    """Add the cells of rows i-1 (0) and i (1) to the nodes of row i; buffers start with an empty cell."""
+def _cell_forces(w, count, p, out):
+    """What a strip of cells gives to its corners, all three components; p: pressure along a1 x a2."""
+    for j in range(count):
+        t = np.uint64(j)
+        ax, ay, az, bx, by, bz = w[A1X + t], w[A1Y + t], w[A1Z + t], w[A2X + t], w[A2Y + t], w[A2Z + t]
+        hx, hy, hz = w[HX + t], w[HY + t], w[HZ + t]
+        _give(w, t, out, 0, ax, bx, hx, p * (ay * hz - az * hy), p * (hy * bz - hz * by), p * (ay * bz - az * by))
+        _give(w, t, out, THIRD, ay, by, hy, p * (az * hx - ax * hz), p * (hz * bx - hx * bz), p * (az * bx - ax * bz))
+        _give(
+            w, t, out, 2 * THIRD, az, bz, hz, p * (ax * hy - ay * hx), p * (hx * by - hy * bx), p * (ax * by - ay * bx)
+        )
+
+
+@njit(**FAST)
+def _gather(f, before, after):
+    """Add the cells of rows i-1 (before) and i (after) to the nodes of row i; f[0] lies between the first two cells."""
     for j in range(f.shape[0]):
-        f[j] += plus0[j] + even0[j] + odd0[j] + minus0[j + 1] + even0[j + 1] - odd0[j + 1]
-        f[j] += -minus1[j] + even1[j] - odd1[j] - plus1[j + 1] + even1[j + 1] + odd1[j + 1]
+        t = np.uint64(j)
+        f[j] += before[PLUS + t] + before[EVEN + t] + before[ODD + t]
+        f[j] += before[MINUS + t + ONE] + before[EVEN + t + ONE] - before[ODD + t + ONE]
+        f[j] += -after[MINUS + t] + after[EVEN + t] - after[ODD + t]
+        f[j] += -after[PLUS + t + ONE] + after[EVEN + t + ONE] + after[ODD + t + ONE]
+
+
+@njit(**FAST)
+def _cells(x, i, a, b, dx, dy, sheet, ogden, pressure, w, out):
+    """What cells a..b-1 of row i give to their corners, into a buffer; nothing where there is no such row."""
+    if i < 0 or i >= x.shape[1] - 1:
+        out[:] = 0.0
+        return
+    count, sizes, e = b - a, dy[a:b], b + 1
+    _means(x[0, i, a:e], x[1, i, a:e], x[2, i, a:e], x[0, i + 1, a:e], x[1, i + 1, a:e], x[2, i + 1, a:e], w, count)
+    _principal(w, count, dx[i], sizes)
+    for q in range(ogden.shape[0]):
+        _add_ogden(w, count, ogden[q, 0], ogden[q, 1])
+    _coefficients(w, count, dx[i], sizes, sheet.thickness, sheet.hourglass, sheet.rigidity)
+    _cell_forces(w, count, pressure, out)
+    for row in range(12):
+        out[row * WIDTH] = 0.0
+        out[row * WIDTH + count + 1] = 0.0
 
 
 @njit(**FAST)
@@ -144,48 +202,25 @@ def rubber_forces(x, f, dx, dy, sheet, ogden, pressure, low, high, work):
     """Add membrane, hourglass, twisting and pressure forces to rows low..high-1 of f.
 
     x, f (3, n, m); dx (n-1,), dy (m-1,) reference cell sizes [mm]; ogden (pairs, 2); pressure [MPa] along the
-    normal x_u x x_v; work (48, m + 2).
+    normal x_u x x_v; work: at least SCRATCH numbers, flat. By strips of STRIP cells, whose fields all lie in the
+    first cache.
     """
-    n, m = x.shape[1], x.shape[2]
-    c = m - 1
-    work[24:48, 0] = 0.0
-    work[24:48, m] = 0.0
-    a1, a2, h = work[0:3], work[3:6], work[6:9]
-    c11, c22, c12, mean, half = work[9, :c], work[10, :c], work[11, :c], work[12, :c], work[13, :c]
-    ln1, ln2, s1, s2 = work[14, :c], work[15, :c], work[16, :c], work[17, :c]
-    k11, k22, k12, g1, g2, twist = work[18, :c], work[19, :c], work[20, :c], work[21, :c], work[22, :c], work[23, :c]
-    for i in range(low - 1, high):
-        old = 24 if i & 1 else 36
-        new = 60 - old
-        if 0 <= i < n - 1:
-            for k in range(3):
-                _means(x[k, i], x[k, i + 1], a1[k, :c], a2[k, :c], h[k, :c])
-            _metric(a1, a2, dx[i], dy, c11, c22, c12)
-            _principal(c11, c22, c12, mean, half, ln1, ln2)
-            s1[:] = 0.0
-            s2[:] = 0.0
-            for q in range(ogden.shape[0]):
-                _add_ogden(ln1, ln2, ogden[q, 0], ogden[q, 1], s1, s2)
-            _stresses(s1, s2, mean, half, c11, c22, c12, dx[i], dy, sheet.thickness, k11, k22, k12)
-            _hourglass(a1, a2, h, dx[i], dy, sheet.hourglass, g1, g2)
-            for j in range(c):
-                twist[j] = sheet.rigidity / (dx[i] * dy[j])  # 2 D (1 - nu) |h|^2 / 2 / (dx dy)^2 A, nu = 1/2
-            for k in range(3):
-                y, z = (k + 1) % 3, (k + 2) % 3
-                o = new + 4 * k
-                _cell_forces(
-                    a1[k], a2[k], h[k], a1[y], a1[z], a2[y], a2[z], h[y], h[z], k11, k22, k12, g1, g2, twist, pressure,
-                    work[o, 1 : c + 1], work[o + 1, 1 : c + 1], work[o + 2, 1 : c + 1], work[o + 3, 1 : c + 1],
-                )  # fmt: skip
-        else:
-            work[new : new + 12] = 0.0
-        if i >= low:
-            for k in range(3):
-                o, q = old + 4 * k, new + 4 * k
-                _gather(
-                    f[k, i], work[o], work[o + 1], work[o + 2], work[o + 3],
-                    work[q], work[q + 1], work[q + 2], work[q + 3],
-                )  # fmt: skip
+    m = x.shape[2]
+    w, buffers = work[: 24 * WIDTH], work[24 * WIDTH : SCRATCH]
+    end = 0
+    while end < m:
+        first, a = end, max(end - 1, 0)
+        b = min(a + STRIP, m - 1)
+        end = b if b < m - 1 else m  # all cells of nodes first..end-1 are among a..b-1
+        skip = 1 if first > 0 else 0  # the cell before the first node is the first one; before the grid there is none
+        for i in range(low - 1, high):
+            one = BUFFER * (i & 1)
+            before, after = buffers[BUFFER - one : 2 * BUFFER - one], buffers[one : one + BUFFER]
+            _cells(x, i, a, b, dx, dy, sheet, ogden, pressure, w, after)
+            if i >= low:
+                for k in range(3):
+                    o, e = k * THIRD + skip, (k + 1) * THIRD
+                    _gather(f[k, i, first:end], before[o:e], after[o:e])
 
 
 @njit(**FAST)

@@ -31,7 +31,7 @@ def new_figure(width_in: float, height_in: float) -> Any:
 def figure_bytes(figure: Any) -> bytes:
     """The figure as PNG."""
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": "ddf"})
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": "ddf"}, pil_kwargs={"compress_level": 3})
     return stream.getvalue()
 
 

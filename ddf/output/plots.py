@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 SHEAR_RANGE_DEG = 60.0
 DISTANCE_RANGE_MM = (-1.0, 10.0)
 INSIDE = "#d55e00"  # where a ply is farther inside the tool than the range goes
-PIXELS = 1400
+PIXELS = 1100
+"""Along the longer side of a view: as many as a figure has."""
 
 
 def draw_formed(sheet: SheetSnapshot, surface: PlySurface | None = None, box: Box | None = None) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from ddf.elements import bending, shear
 from ddf.elements.bending import bending_energy, bending_forces
 from ddf.elements.plate import plate_energy, plate_forces
-from ddf.elements.rubber import cone_volume, rubber_energy, rubber_forces
+from ddf.elements.rubber import SCRATCH, cone_volume, rubber_energy, rubber_forces
 from ddf.elements.shear import shear_energy, shear_forces
 from ddf.elements.tension import LINES, line_scratch, pull_kept, pull_lines, pull_rows, tension_energy
 from ddf.materials.shear_law import shear_samples, shear_table
@@ -167,7 +167,7 @@ def rubber_patch(rng, rows=7, cols=9, **values):
 def rubber(patch, x, pressure=0.0, seam=None):
     f = np.zeros_like(x)
     for low, high in _blocks(x.shape[1], seam):
-        work = np.full((72, x.shape[2] + 2), np.nan)
+        work = np.full(SCRATCH, np.nan)
         rubber_forces(x, f, patch.dx, patch.dy, patch.sheet, OGDEN, pressure, low, high, work)
     return f
 

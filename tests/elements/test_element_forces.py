@@ -1,9 +1,13 @@
 """Every force is minus the gradient of its energy, also across the seam of two row blocks."""
 
+from dataclasses import replace
+
 import numpy as np
 import patches as p
 import pytest
 from differences import gradient
+
+from ddf.elements.rubber import STRIP
 
 SEAM = 3
 
@@ -148,3 +152,19 @@ def test_plate_energy_of_a_cylinder_and_of_a_twist():
     twist = p.rubber_energies(patch, x)[2]
     # 1/2 D (1 - nu) 2 w_xy^2 with nu = 1/2
     assert twist == pytest.approx(0.5 * 1.085 * 1e-6 * patch.dx.sum() * patch.dy.sum(), rel=1e-9)
+
+
+@pytest.mark.parametrize("cols", [STRIP - 1, STRIP, STRIP + 1, 2 * STRIP + 5])
+def test_strips_of_a_wide_diaphragm_do_not_change_its_force(cols):
+    """Nodes away from the ends have the forces that they have in narrow parts of the sheet, of one strip each."""
+    patch = p.rubber_patch(np.random.default_rng(8), 6, cols)
+    x = p.wavy(patch.rest, np.random.default_rng(9))
+    force = p.rubber(patch, x, 0.1)
+    for first in range(0, cols - 8, 5):
+        part = replace(patch, dy=patch.dy[first : first + 8])
+        narrow = p.rubber(part, np.ascontiguousarray(x[:, :, first : first + 9]), 0.1)
+        here = np.s_[1 if first else 0 : 8]
+        assert np.abs(force[:, :, first : first + 9][..., here] - narrow[..., here]).max() < 1e-12 * np.abs(force).max()
+    last = replace(patch, dy=patch.dy[-8:])
+    narrow = p.rubber(last, np.ascontiguousarray(x[:, :, -9:]), 0.1)
+    assert np.abs(force[:, :, -8:] - narrow[..., 1:]).max() < 1e-12 * np.abs(force).max()

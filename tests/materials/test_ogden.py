@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddf.elements.rubber import rubber_forces
+from ddf.elements.rubber import SCRATCH, rubber_forces
 from ddf.materials.ogden import bending_rigidity, biot_stress, initial_shear_modulus
 from ddf.model import SHEET
 
@@ -43,7 +43,7 @@ def _edge_stresses(l1, l2):
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
     f = np.zeros_like(x)
     x = np.ascontiguousarray(np.tensordot(turn, x, 1))
-    rubber_forces(x, f, dx, dy, sheet[0], np.array(TERMS), 0.0, 0, 4, np.zeros((48, 5)))
+    rubber_forces(x, f, dx, dy, sheet[0], np.array(TERMS), 0.0, 0, 4, np.zeros(SCRATCH))
     f = np.tensordot(turn.T, f, 1)
     return -f[0, -1].sum() / (1.5 * dy.sum()), -f[1, :, -1].sum() / (1.5 * dx.sum())
 

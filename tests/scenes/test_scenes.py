@@ -7,7 +7,7 @@ from random_scenes import random_case
 DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
 """Among the quickest: all tools, fillets down to none, 1 to 4 plies, most orders of loading."""
 CRUSHED = 43
-"""Four frictionless plies crushed on a sharp ridge: where families of one run nearly alike, bars swing by 1.5 %."""
+"""Four frictionless plies crushed on a sharp ridge: where families of one run nearly alike, bars swing by up to 1 %."""
 
 
 @pytest.mark.parametrize("number", DOZEN)
