@@ -10,8 +10,8 @@ name           shape                 meaning [unit]
 ============== ===================== =========================================================================
 x, v, f        pool (3 N,)           position [mm], velocity [mm/s], force [N] without fibre tension;
                                      sheet k is the slice 3*node : 3*(node + rows*cols) as (3, rows, cols)
-place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap [mm], its rate,
-                                     viscous normal force [N]
+place          (5, P)                a contact slave on its master: grid coordinates (u, v), gap (where it touches: less
+                                     the depth that its springs have taken) [mm], its rate, viscous normal force [N]
 slip           (2, P)                slip of its friction spring, along the master's grid lines and across [mm]
 tool_anchor    (7, 3, n, m)          anchors of the points of a node and its cell: tool frame; on walls: box [mm]
 spots          (k, 5)                places of the tool's sharp vertices on its sheet, see `contact.summit`

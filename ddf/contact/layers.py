@@ -27,8 +27,7 @@ master that stretched took what slip was held along, and gave the springs energy
 A node whose place lies outside the master's fabric is not in contact. Over half a cell on both sides of a ply's edge U
 fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the node off the edge): the corner of one
 ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
-30 m/s (seen). One that is far away rests for as many
-steps as it needs at the given reach to come near.
+30 m/s (seen). One that is far away rests for as many steps as it needs at the given reach to come near.
 
 A node that did not touch and is found deep (its projection failed for some steps, or a sheet has been pressed through
 another and comes back) did no work to get there. With all its depth at once the penalty threw it out: in a stack
@@ -366,9 +365,9 @@ def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
         # the spring's force is taken to act through all of the step in which contact begins or ends
         pull, left = _spring(opened, before, hard)
         damped += left * inverse_dt - 0.5 * pull * rate
-        # the same where its depth grows by itself
+        # the same where the depth has grown by itself (whole + dt rate: the whole depth of the last step)
         pull, left = _spring(k, before, hard)
-        abrupt = 1.0 if before == 0.0 or depth < whole else 0.0
+        abrupt = 1.0 if before == 0.0 or depth < whole or whole + dt * rate > before + growth else 0.0
         damped -= abrupt * (0.5 * (spring + pull) * rate + (stored - left) * inverse_dt)
         # the viscous force of the last step worked on the mean of the rates before and after it
         damped -= 0.5 * w[OLD_DRAG + t] * (w[OLD_RATE + t] + rate)
@@ -447,12 +446,11 @@ def layer_forces(
     """Add the contact forces of slave rows low..high-1 to fs and to the master's buffer.
 
     xs, vs, fs (3, n, m) slave; normal (n, m) gathers its normal forces [N]; xm, vm (N, M, 4) master as from
-    `pack_rows`, vm with zeros for the cover; area (n, m) [mm2];
-    centre (N, M, 2) from `patch_centres`; place (5, n, m): (u, v), gap, its rate and viscous force
-    of the last step; slip (2, n, m) [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes
-    that are not followed; buffer (N, M, 4), span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a
-    step [mm]; scratch = (w, patch, nodes) from `chunk_scratch`. out (4,): normal and tangential spring energy
-    now, friction and damping loss of this step [N mm].
+    `pack_rows`, vm with zeros for the cover; area (n, m) [mm2]; centre (N, M, 2) from `patch_centres`; place (5, n, m):
+    (u, v), gap (where it touches: less the depth taken), its rate and viscous force of the last step; slip (2, n, m)
+    [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed; buffer (N, M, 4),
+    span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a step [mm]; scratch = (w, patch, nodes)
+    from `chunk_scratch`. out (4,): normal and tangential spring energy now, friction and damping loss of this step [N mm].
     """
     size = xs.shape[1] * xs.shape[2]
     x, v, f = xs.reshape((3, size)), vs.reshape((3, size)), fs.reshape((3, size))

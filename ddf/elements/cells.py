@@ -16,7 +16,7 @@ TILE = 128
 """Cells of a row that go through the passes together."""
 
 WEIGHTLESS = 1e-6
-"""Area [mm2] of cells that are there and bear nothing: in half models, beyond the plane."""
+"""Area [mm2] up to which cells are there and bear nothing: in half models, beyond the plane."""
 
 # fields of `g`, whose entry t + 1 is cell t between two empty cells
 WIDTH = TILE + 2

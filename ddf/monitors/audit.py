@@ -10,7 +10,7 @@ import numpy as np
 from ddf.model import sheet_scalars, sheet_vectors
 from ddf.monitors.crossings import self_crossings
 from ddf.monitors.energy import Energies
-from ddf.monitors.layers import DEEP, depth_in_layers
+from ddf.monitors.layers import DEEP, depth_in_layers, depths
 from ddf.monitors.stability import fibre_stretch
 from ddf.monitors.zigzag import zigzag_share
 from ddf.scene import Scene
@@ -95,9 +95,9 @@ def self_contact(scene: Scene) -> tuple[int, float]:
     for pair in model.pairs[model.pairs["slave"] == model.pairs["master"]]:
         sheet = model.sheets[pair["slave"]]
         first, nodes = int(pair["first"]), int(sheet["rows"] * sheet["cols"])
-        gap = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[2]
-        count += int(np.count_nonzero(gap < 0.0))
-        deepest = max(deepest, float(-gap.min() / pair["offset"]))
+        touches = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[2] < 0.0
+        count += int(np.count_nonzero(touches))
+        deepest = max(deepest, float(depths(scene, pair, touches).max(initial=0.0)))
     return count, deepest
 
 

@@ -29,27 +29,43 @@ def depth_in_layers(scene: Scene) -> tuple[float, float]:
     """
     worst = deepest = 0.0
     for pair in scene.model.pairs:
-        slave, master = int(pair["slave"]), int(pair["master"])
-        x, y = sheet_vectors(scene.model, scene.state.x, slave), sheet_vectors(scene.model, scene.state.x, master)
-        cell = sheet_scalars(scene.model, scene.model.cell, master)
-        node = int(scene.model.sheets[master]["node"])
-        centre = scene.model.centre[2 * node : 2 * (node + cell.size)].reshape(*cell.shape, 2)
-        y = with_rim(y, sheet_rim(scene.model, master))
-        nodes, first = x[0].size, int(pair["first"])
-        u, v = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[:2]
-        i, j = (np.clip(p.astype(int), 0, n - 2) for p, n in zip((u, v), cell.shape, strict=True))
-        inside = scene.model.exposed[first : first + nodes] & (u >= 0) & (v >= 0) & (cell[i, j] > 0)
-        inside &= (u <= cell.shape[0] - 1) & (v <= cell.shape[1] - 1)
-        i, j = (np.clip((p[inside] + 0.5).astype(int), 0, n - 1) for p, n in zip((u, v), cell.shape, strict=True))
-        middle = centre[i, j]
-        surface, normal = _surface(y, middle, np.stack([u[inside], v[inside]], axis=1) - middle)
-        away = x.reshape(3, nodes)[:, inside] - surface
-        offset = float(pair["offset"])
-        near = (middle[:, 0] >= 0) & (np.linalg.norm(away, axis=0) < NEAR * offset)
-        depth = np.where(near, 1.0 - float(pair["sign"]) * (away * normal).sum(axis=0) / offset, 0.0)
-        worst = max(worst, float((depth > DEEP).sum()) / max(int(inside.sum()), 1))
+        first, nodes = int(pair["first"]), _nodes(scene, pair)
+        depth = depths(scene, pair, scene.model.exposed[first : first + nodes])
+        worst = max(worst, float((depth > DEEP).sum()) / max(depth.size, 1))
         deepest = max(deepest, float(depth.max(initial=0.0)))
     return worst, deepest
+
+
+def _nodes(scene: Scene, pair: np.void) -> int:
+    """Number of nodes of a pair's slave."""
+    slave = scene.model.sheets[int(pair["slave"])]
+    return int(slave["rows"] * slave["cols"])
+
+
+def depths(scene: Scene, pair: np.void, wanted: NDArray[np.bool_]) -> Array:
+    """How deep those wanted of a pair's slave nodes (n,) are in its master, over the distance at which both touch.
+
+    Of those that are over the master's fabric, one number each; 0 or less where nothing is pressed, and 0 where the
+    node is far from its place.
+    """
+    slave, master = int(pair["slave"]), int(pair["master"])
+    x, y = sheet_vectors(scene.model, scene.state.x, slave), sheet_vectors(scene.model, scene.state.x, master)
+    cell = sheet_scalars(scene.model, scene.model.cell, master)
+    node = int(scene.model.sheets[master]["node"])
+    centre = scene.model.centre[2 * node : 2 * (node + cell.size)].reshape(*cell.shape, 2)
+    y = with_rim(y, sheet_rim(scene.model, master))
+    nodes, first = x[0].size, int(pair["first"])
+    u, v = scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[:2]
+    i, j = (np.clip(p, 0, n - 2).astype(int) for p, n in zip((u, v), cell.shape, strict=True))
+    inside = wanted & (u >= 0) & (v >= 0) & (cell[i, j] > 0)
+    inside &= (u <= cell.shape[0] - 1) & (v <= cell.shape[1] - 1)
+    i, j = (np.clip((p[inside] + 0.5).astype(int), 0, n - 1) for p, n in zip((u, v), cell.shape, strict=True))
+    middle = centre[i, j]
+    surface, normal = _surface(y, middle, np.stack([u[inside], v[inside]], axis=1) - middle)
+    away = x.reshape(3, nodes)[:, inside] - surface
+    offset = float(pair["offset"])
+    near = (middle[:, 0] >= 0) & (np.linalg.norm(away, axis=0) < NEAR * offset)
+    return np.where(near, 1.0 - float(pair["sign"]) * (away * normal).sum(axis=0) / offset, 0.0)
 
 
 def _surface(y: Array, middle: NDArray[np.int32], t: Array) -> tuple[Array, Array]:

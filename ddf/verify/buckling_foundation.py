@@ -36,6 +36,11 @@ def bedded(options: Options, element_mm: float, length: float, penalty: float = 
     for k, sign in ((0, -1.0), (2, 1.0)):
         positions(scene, k)[2] = sign * (touching - INTERFERENCE_MM)
         scene = held(scene, np.ones((int(sheets[k]["rows"]), int(sheets[k]["cols"])), bool), k)
+    for pair in scene.model.pairs[
+        scene.model.pairs["slave"] == PLY
+    ]:  # it has come to these depths, see `contact.layers`
+        first, nodes = int(pair["first"]), int(sheets[PLY]["rows"] * sheets[PLY]["cols"])
+        scene.state.place[5 * first : 5 * (first + nodes)].reshape(5, nodes)[2] = -INTERFERENCE_MM
     x = positions(scene, PLY)
     x[2] = 0.0
     return held(scene, np.abs(x[1]) > 0.5 * length - 0.1 * element_mm, PLY)

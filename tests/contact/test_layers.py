@@ -121,17 +121,21 @@ def test_row_blocks_of_the_slave_do_not_change_forces():
     assert np.abs(a[1] - b[1]).max() < 1e-14 * np.abs(a[1]).max()
 
 
-def test_a_contact_found_deep_comes_in_slowly_and_its_energy_is_booked():
+@pytest.mark.parametrize("dt", [1e-6, 1e-5])
+@pytest.mark.parametrize("rate", [0.0, -2e3, 1e3])
+def test_a_contact_found_deep_comes_in_slowly_and_its_energy_is_booked(dt, rate):
     """Free nodes half an offset deep in a held master, damped, until they are out; the ledger closes."""
-    xm, height, mass, dt = _flat_master(), 0.5, 5e-9, 1e-6
-    xs, vs, still = _nodes(height=height), np.zeros_like(_nodes()), np.zeros_like(xm)
+    xm, height, mass = _flat_master(), 0.5, 5e-9
+    xs, still = _nodes(height=height), np.zeros_like(xm)
+    vs = np.zeros_like(xs) + np.array([0.0, 0.0, rate])[:, None, None]
     scene = t.Layers(xs, xm, 20.0, t.make_pair(damping=1e-5))
+    scene.place[3:] = 0.0
     whole = t.Layers(xs, xm, 20.0, scene.pair).settle(xs, xm).forces(xs, xm)[0][2, 0, 0]
-    first = scene.forces(xs, xm, dt)[0][2, 0, 0]
-    assert 0.0 < first < 1e-3 * whole
     work = lost = fastest = 0.0
-    for _ in range(20_000):
+    for step in range(round(0.02 / dt)):
         f = scene.forces(xs, xm, dt, rates=(vs, still))[0]
+        if step == 0:
+            assert 0.0 <= f[2, 0, 0] < (dt / 1e-4 + 4.0 * max(-rate, 0.0) * dt / height) * whole
         lost += scene.out[3]
         work += 0.5 * (f * vs).sum() * dt
         vs = vs + dt * f / mass
@@ -139,9 +143,11 @@ def test_a_contact_found_deep_comes_in_slowly_and_its_energy_is_booked():
         xs, fastest = xs + dt * vs, max(fastest, vs[2, 0, 0])
     assert xs[2, 0, 0] > 1.0 - 1e-6
     at_once = height**2 + 2.0 * 0.3**2  # energy of a node with all of the penalty from the first step on
-    assert 0.5 * mass * fastest**2 < 0.1 * at_once
+    if rate >= 0.0:  # else it goes deeper first
+        assert 0.5 * mass * (fastest**2 - rate**2) < 0.1 * at_once
     assert scene.out[0] == pytest.approx(0.0, abs=1e-9)
-    assert work + lost == pytest.approx(0.0, abs=0.02 * work), (work, lost)
+    # to the first order in the step: the viscous force lags half a step
+    assert work + lost == pytest.approx(0.0, abs=0.03 * 0.5 * mass * fastest**2 * xs[0].size), (work, lost)
 
 
 def test_open_gaps_have_no_force_and_lose_their_slip():
