@@ -450,7 +450,8 @@ def layer_forces(
     (u, v), gap (where it touches: less the depth taken), its rate and viscous force of the last step; slip (2, n, m)
     [mm]; both updated; rest (n, m) int8: steps to rest, negative for nodes that are not followed; buffer (N, M, 4),
     span (N, 2), cleared by `clear_buffer`; reach: way that a node can go in a step [mm]; scratch = (w, patch, nodes)
-    from `chunk_scratch`. out (4,): normal and tangential spring energy now, friction and damping loss of this step [N mm].
+    from `chunk_scratch`. out (4,): normal and tangential spring energy now, friction and damping loss of this step
+    [N mm].
     """
     size = xs.shape[1] * xs.shape[2]
     x, v, f = xs.reshape((3, size)), vs.reshape((3, size)), fs.reshape((3, size))
