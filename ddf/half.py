@@ -37,11 +37,14 @@ class Half:
         """The half that is computed, in words."""
         return f"{'xy'[self.axis]} > 0"
 
-    def unfold(self, model: Model, state: State) -> State:
-        """State of the whole from that of the half: motion, forces, places, energies; the rest as at the start."""
+    def unfold(self, model: Model, state: State, places: bool = True) -> State:
+        """State of the whole from that of the half: motion, forces, places, energies; the rest as at the start.
+
+        places: whether those of contact are wanted; else they are as at the start.
+        """
         whole, start = self.whole, self.start
         full = start._replace(
-            x=start.x.copy(), v=start.v.copy(), f=start.f.copy(), place=start.place.copy(), press=start.press.copy(),
+            x=start.x.copy(), v=start.v.copy(), f=start.f.copy(), press=start.press.copy(),
             ledger=2.0 * state.ledger, springs=2.0 * state.springs, clock=state.clock.copy(),
         )  # fmt: skip
         for k, (source, flipped) in enumerate(zip(self.source, self.flipped, strict=True)):
@@ -59,8 +62,10 @@ class Half:
             full.press[first : first + count][there.ravel()] = state.press[half_first : half_first + half_count][at]
             on_plane = model.plane[(model.plane >= half_first) & (model.plane < half_first + half_count)] - half_first
             sheet_vectors(whole, full.f, k)[:, np.isin(source, on_plane)] *= 2.0
-        for number in range(whole.pairs.size):
-            self._unfold_places(model, state, full, number)
+        if places:
+            full = full._replace(place=start.place.copy())
+            for number in range(whole.pairs.size):
+                self._unfold_places(model, state, full, number)
         return full
 
     def _unfold_places(self, model: Model, state: State, full: State, number: int) -> None:

@@ -49,12 +49,15 @@ class Scene:
     half: Half | None = None  # of a half model: the whole that it stands for
     symmetry: str = ""  # why a scene that might be computed by half is not
 
-    def whole(self) -> Scene:
-        """The whole scene as it is now, for all that observes it; of a half model in arrays of its own."""
+    def whole(self, places: bool = True) -> Scene:
+        """The whole scene as it is now, for all that observes it; of a half model in arrays of its own.
+
+        places: whether anybody looks at the places of contact, which take longest.
+        """
         if self.half is None:
             return self
         model = self.half.whole._replace(dt=self.model.dt)
-        return replace(self, model=model, state=self.half.unfold(self.model, self.state), half=None)
+        return replace(self, model=model, state=self.half.unfold(self.model, self.state, places), half=None)
 
     @property
     def steps(self) -> int:

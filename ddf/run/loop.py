@@ -211,7 +211,7 @@ class Runner:
             self.frames_done = due
 
     def _energies(self) -> Energies:
-        whole = self.scene.whole()
+        whole = self.scene.whole(places=False)
         return energies(whole.model, whole.state)
 
     def _is_history_step(self) -> bool:
