@@ -116,7 +116,8 @@ def frames_bytes(scene: Scene) -> float:
     """Size of all frames of a run on disk [byte], about."""
     if not scene.case.output.vtu:
         return 0.0
-    nodes = sum(int(s["rows"] * s["cols"]) for s in scene.model.sheets)
+    whole = scene.model if scene.half is None else scene.half.whole  # frames are of all of it
+    nodes = sum(int(s["rows"] * s["cols"]) for s in whole.sheets)
     return float(BYTES_A_FRAME_NODE * nodes * scene.case.output.frames_per_stage * len(scene.path.names))
 
 
