@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from ddf.contact.self_search import SelfContact
 from ddf.dynamics.handle import held
+from ddf.dynamics.pace import Pace
 from ddf.dynamics.phases import largest_square
 from ddf.dynamics.step import advance
 from ddf.dynamics.team import Team
@@ -26,7 +28,7 @@ class Simulation:
     def __init__(self, scene: Scene, threads: int = 1) -> None:
         self.scene = scene
         self.model, self.state = scene.model, scene.state
-        self.team = Team(threads)
+        self.team, self.pace = Team(threads), Pace(threads)
         self.work = make_work(scene.model, threads)
         self._followed = np.where(scene.model.exposed, 0, -1).astype(np.int8)
         self._self_contact = SelfContact(self.model, self.state, self.work.packed, self.work.rest, self.work.idle)
@@ -88,7 +90,10 @@ class Simulation:
         self.work.rest[:] = self._followed
         reach = self._reach_speed(schedule) * model.dt
         self.seek(reach * steps)
-        self.team.run(advance, *self.handles, schedule, self.step, reach)
+        began = perf_counter()
+        self.team.run(advance, *self.handles, schedule, self.step, reach, members=self.pace.count)
+        if steps:
+            self.pace.took((perf_counter() - began) / steps)
         state.clock[0] += steps
         state.clock[1] = self.time_of(state.clock[0])
         if steps:

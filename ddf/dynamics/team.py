@@ -83,14 +83,15 @@ class Team:
         self.sync = np.zeros(16, dtype=np.int64)
         self._pool = ThreadPoolExecutor(members - 1) if members > 1 else None
 
-    def run(self, function: Callable[..., None], *arguments: object) -> None:
-        """Call function(member, members, sync, *arguments) on all members; return when all have."""
+    def run(self, function: Callable[..., None], *arguments: object, members: int | None = None) -> None:
+        """Call function(member, members, sync, *arguments) on all members, or on so many; return when all have."""
         self.sync[:] = 0
-        if self._pool is None:
+        count = self.members if members is None else members
+        if self._pool is None or count == 1:
             function(0, 1, self.sync, *arguments)
             return
-        others = [self._pool.submit(function, k, self.members, self.sync, *arguments) for k in range(1, self.members)]
-        function(0, self.members, self.sync, *arguments)
+        others = [self._pool.submit(function, k, count, self.sync, *arguments) for k in range(1, count)]
+        function(0, count, self.sync, *arguments)
         for other in others:
             other.result()
 
