@@ -1,13 +1,15 @@
 """Where a sheet passes through itself: edges of one cell through the triangles of another, exactly.
 
 A wrinkle that closes on itself without self-contact does so unseen by all else. Only cells that lie near each other in
-space and not on the grid are looked at, so a sheet without folds costs one search of neighbours.
+space are looked at, and of those that are neighbours on the grid only the ones beside a sharp kink, so a sheet without
+folds costs one search of neighbours.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
 from ddf.model import sheet_scalars, sheet_vectors
@@ -18,11 +20,14 @@ Array = NDArray[np.float64]
 APART = 2
 """Cells at most this far apart on the grid along both directions are neighbours."""
 
+KINK = 0.6
+"""Cosine of the angle between triangles of cells side by side from which on neighbours can cross."""
+
 FLATTEST = 1e-9
 """Sine of the angle below which an edge lies in a triangle's plane (cells on the platform do) and does not pass it."""
 
 CORNERS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
+EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2))
 TRIANGLES = ((0, 1, 2), (0, 2, 3))
 
 
@@ -47,13 +52,39 @@ def crossings_of(x: Array, exists: NDArray[np.bool_]) -> int:
     middle = points.mean(axis=1)
     reach = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
     pairs = _near(middle, reach)
-    pairs = pairs[np.abs(cells[pairs[:, 0]] - cells[pairs[:, 1]]).max(axis=1) > APART]
+    apart = np.abs(cells[pairs[:, 0]] - cells[pairs[:, 1]]).max(axis=1) > APART
+    kinked = _kinked(x, exists)[exists]
+    pairs = pairs[apart | (kinked[pairs[:, 0]] & kinked[pairs[:, 1]])]
     away = np.linalg.norm(middle[pairs[:, 0]] - middle[pairs[:, 1]], axis=1)
     pairs = pairs[away < reach[pairs].sum(axis=1)]
     both = np.concatenate([pairs, pairs[:, ::-1]])
     one, other = points[both[:, 0]], points[both[:, 1]]
-    return int(sum(_through(one[:, a], one[:, b], *(other[:, c] for c in triangle)).sum()
-                   for a, b in EDGES for triangle in TRIANGLES))  # fmt: skip
+    nodes = (cells[:, None] + CORNERS) @ [x.shape[2], 1]
+    ends, corners = nodes[both[:, 0]], nodes[both[:, 1]]
+    count = 0
+    for a, b in EDGES:
+        for triangle in TRIANGLES:
+            shared = (ends[:, (a, b), None] == corners[:, None, triangle]).any(axis=(1, 2))
+            count += int((_through(one[:, a], one[:, b], *(other[:, c] for c in triangle)) & ~shared).sum())
+    return count
+
+
+def _kinked(x: Array, exists: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cells within `APART` of a pair of triangles, of one cell or of two side by side, at more than `KINK` says."""
+    corners = [x[:, i : i + exists.shape[0], j : j + exists.shape[1]] for i, j in CORNERS]
+    normals = [_direction(np.cross(corners[b] - corners[a], corners[c] - corners[a], axis=0)) for a, b, c in TRIANGLES]
+    sharp = (normals[0] * normals[1]).sum(axis=0) < KINK
+    for a, b in (np.s_[1:, :], np.s_[:-1, :]), (np.s_[:, 1:], np.s_[:, :-1]):
+        closest = [(one[:, *a] * other[:, *b]).sum(axis=0) for one in normals for other in normals]
+        bent = (np.min(closest, axis=0) < KINK) & exists[a] & exists[b]
+        sharp[a] |= bent
+        sharp[b] |= bent
+    return binary_dilation(sharp & exists, np.ones((3, 3)), iterations=APART)
+
+
+def _direction(v: Array) -> Array:
+    """Vectors (3, ...) made one long."""
+    return v / np.maximum(np.linalg.norm(v, axis=0), 1e-300)
 
 
 def _near(middle: Array, reach: Array) -> NDArray[np.intp]:

@@ -64,3 +64,20 @@ def test_cells_in_one_plane_do_not_cross():
     u, v = np.meshgrid(np.linspace(0.0, 300.0, 12), np.linspace(0.0, 60.0, 41), indexing="ij")
     x = np.array([u, v, rng.normal(size=u.shape) * 1e-14])
     assert crossings_of(x, np.ones((11, 40), bool)) == 0
+
+
+def _crumpled(seed, share):
+    """Nodes (3, 9, 9) of a flat grid of 2 mm, each moved at random by a share of that."""
+    u, v = np.meshgrid(np.arange(9.0), np.arange(9.0), indexing="ij")
+    x = 2.0 * np.array([u, v, np.zeros_like(u)])
+    return x + 2.0 * share * np.random.default_rng(seed).normal(size=x.shape)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8])
+@pytest.mark.parametrize("seed", range(4))
+def test_kinks_of_neighbouring_cells_cross_where_an_independent_test_says_so(seed, share):
+    x = _crumpled(seed, share)
+    number = np.arange(81).reshape(9, 9)
+    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    known = crossings(x.reshape(3, -1).T, quads)
+    assert (crossings_of(x, np.ones((8, 8), bool)) > 0) == (len(known) > 0)
