@@ -46,7 +46,7 @@ def describe_scene(scene: Scene) -> str:
     for info, sheet in zip(scene.sheets, model.sheets, strict=True):
         lines.append(
             f"  {info.name}: {int(sheet['rows'])} x {int(sheet['cols'])} nodes, {info.thickness_mm:g} mm, "
-            f"{1e6 * info.true_mass:.1f} g + {1e6 * info.added_mass:.1f} g added"
+            f"{1e6 * info.true_mass:.1f} g {1e6 * info.added_mass:+.1f} g for the step"
         )
     lines += ["", "physics"]
     for ply in case.plies:

@@ -5,38 +5,81 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ddf.build.stack import Stack
 from ddf.case import Case
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
 from ddf.materials import ogden
+from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.ply import PlyMesh
 from ddf.model import SHELL_PLY
 
-OWN_STIFFNESS, OWN_DAMPING = 1 / 6, 0.25
-"""Stiffness and damping ratio of a diaphragm's contact with itself over those of layers. It comes on top of the layers
-that press on the other face; more would shorten the step of every run, and 0.5 N/mm3 give 0.2 mm under vacuum. A face
-of a ply that touches itself touches nothing else: there it is the layers' stiffness."""
+OWN_STIFFNESS, OWN_DAMPING = 0.5, 0.25
+"""Stiffness [N/mm3] of a diaphragm's contact with itself, half of the layers' at most, and its damping ratio over
+theirs. It comes on top of the layers that press on the other face; more would shorten the step of every run, and it
+gives 0.2 mm under vacuum. A face of a ply that touches itself touches nothing else: there it is the layers' own."""
+MOST_SCALING = 9.6
+"""Most times its own mass, over the diaphragms' factor, that a ply carries for the sake of the step (24 at 2.5)."""
+SPARE = 2.2
+"""Mass of plies over what the diaphragms' step asks: layers pressed deep in one another are stiffer than its bound."""
+ROUNDS = 6
+LEAST_SHARE, LEAST_CONTACT = 0.25, 0.4
+"""Least mass and contact stiffness per area of a diaphragm's node over those where elements are finest, and least
+contact stiffness [N/mm3]: with less, diaphragms under vacuum lay deeper in each other than where contact becomes
+stiffer than the step allows for, and there a flat stack shook for good."""
 TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
 
 
-def areal_masses(case: Case, stack: Stack, density: float, tangents: list[float]) -> tuple[list[float], list[float]]:
-    """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2]."""
+def areal_masses(
+    case: Case, stack: Stack, terms, density: float, tangents: list[float]
+) -> tuple[list[float], list[float]]:
+    """Mass scaling of each ply and areal mass of each sheet as clamped, where elements are finest [tonne/mm2].
+
+    Plies without a factor or a step of their own are as heavy as the diaphragms' step asks, `SPARE` included, up to
+    `MOST_SCALING`.
+    """
     solver = case.solver
-    scales = []
-    for number, (ply, material, shear) in enumerate(zip(stack.plies, stack.materials, tangents, strict=True)):
-        areal = material.areal_density_gsm * TONNE_PER_GSM_MM2
-        if solver.target_step_s is not None:
-            omega2 = ply_omega2(case, number, ply, material, shear, areal)
-            step = solver.step_safety * timestep.damped_limit(math.sqrt(omega2), solver.contact_damping)
-            scales.append(max(1.0, (solver.target_step_s / step) ** 2))
-        else:
-            scales.append(solver.mass_scaling if solver.mass_scaling is not None else 1.0)
+    areal = [m.areal_density_gsm * TONNE_PER_GSM_MM2 for m in stack.materials]
     skin = solver.diaphragm_mass_scaling * density * case.diaphragms.thickness_mm / case.diaphragms.pre_stretch**2
-    plies = [m.areal_density_gsm * TONNE_PER_GSM_MM2 * s for m, s in zip(stack.materials, scales, strict=True)]
-    return scales, [skin, *plies, skin]
+    scales = [1.0 if solver.mass_scaling is None else solver.mass_scaling for _ in areal]
+
+    def masses() -> list[float]:
+        return [skin, *(m * s for m, s in zip(areal, scales, strict=True)), skin]
+
+    if solver.target_step_s is not None:
+        for k in range(len(areal)):
+            omega = math.sqrt(ply_omega2(case, k, stack.plies[k], stack.materials[k], tangents[k], areal[k]))
+            step = solver.step_safety * timestep.damped_limit(omega, solver.contact_damping)
+            scales[k] = max(1.0, (solver.target_step_s / step) ** 2)
+    elif solver.mass_scaling is None:
+        most = MOST_SCALING * solver.diaphragm_mass_scaling
+        for _ in range(ROUNDS):  # masses of both sheets are in the damping of their contact
+            *plies, diaphragm = step_limits(case, stack, terms, masses(), tangents)
+            for k, step in enumerate(plies):
+                scales[k] = max(1.0, min(scales[k] * SPARE * (diaphragm / step) ** 2, most))
+    return scales, masses()
+
+
+def diaphragm_shares(case: Case, terms, mesh: DiaphragmMesh) -> NDArray[np.float64]:
+    """Mass per area of a diaphragm's nodes over that where elements are finest, (n, m): what the same step asks.
+
+    Longer elements are softer, by their shorter side (of what the bound of the step has for square ones half is for
+    what forming adds); `LEAST_SHARE` is the least. The stiffness of contact, which sets the step too, goes with it.
+    What lies outside the plies is most of a diaphragm, and its inertia has a say in how the sheets come down.
+    """
+    mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, case.diaphragms.thickness_mm)
+    shortest = []
+    for line in (mesh.x_lines, mesh.y_lines):
+        size = np.pad(np.diff(line), 1, mode="edge")
+        shortest.append(np.minimum(size[1:], size[:-1]))
+    q = 2.0 / np.minimum(shortest[0][:, None], shortest[1][None, :]) ** 2
+    d = case.diaphragms
+    stiff = timestep.diaphragm_stiffness(mu, d.thickness_mm, bending if d.bending else 0.0, q)
+    least = max(LEAST_SHARE, min(1.0, LEAST_CONTACT / case.solver.contact_stiffness_N_mm3))
+    return np.clip(stiff / stiff.max(), least, 1.0)
 
 
 def ply_omega2(case: Case, number: int, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
@@ -67,6 +110,11 @@ def damp_fibres(case: Case, sheets: np.ndarray, masses: list[float], tangents: l
 
 def step_limit(case: Case, stack: Stack, terms, masses: list[float], tangents: list[float]) -> float:
     """Stable step [s], the least of all sheets, safety included."""
+    return min(step_limits(case, stack, terms, masses, tangents))
+
+
+def step_limits(case: Case, stack: Stack, terms, masses: list[float], tangents: list[float]) -> list[float]:
+    """Stable steps [s] of the plies, then of the diaphragms, safety included."""
     solver, d = case.solver, case.diaphragms
     stiff = solver.contact_stiffness_N_mm3
     limits = []
@@ -75,26 +123,29 @@ def step_limit(case: Case, stack: Stack, terms, masses: list[float], tangents: l
         damping = 2.0 * sum(pair_damping(case, masses, k + 1, other) for other in (k, k + 2))
         if case.plies[k].formulation == "shell-membrane":
             damping += 2.0 * case.solver.fibre_damping * math.sqrt(omega2) * masses[k + 1]
-        limits.append((math.sqrt(omega2), damping / masses[k + 1]))
+        limits.append(_damped(omega2, damping / masses[k + 1]))
     mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, d.thickness_mm)
-    omega2 = timestep.diaphragm_omega2(
-        mu, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff
-    )
+    bending = bending if d.bending else 0.0
+    omega2 = timestep.diaphragm_omega2(mu, d.thickness_mm, bending, masses[0], d.element_mm, stiff)
     damping = 2.0 * max(pair_damping(case, masses, 0, other) for other in range(1, len(masses)))
-    limits.append((math.sqrt(omega2), damping / masses[0]))
+    skin = _damped(omega2, damping / masses[0])
     if solver.self_contact:  # normal to flanks that touch: bending and contacts, but nothing of the membrane
         own, own_damping = own_contact(case, masses[0])
-        omega2 = timestep.diaphragm_omega2(
-            0.0, d.thickness_mm, bending if d.bending else 0.0, masses[0], d.element_mm, stiff + own
-        )
-        limits.append((math.sqrt(omega2), (damping + 2.0 * own_damping) / masses[0]))
-    return solver.step_safety * min(timestep.damped_limit(w, c / (2.0 * w)) for w, c in limits)
+        omega2 = timestep.diaphragm_omega2(0.0, d.thickness_mm, bending, masses[0], d.element_mm, stiff + own)
+        skin = min(skin, _damped(omega2, (damping + 2.0 * own_damping) / masses[0]))
+    return [solver.step_safety * limit for limit in [*limits, skin]]
+
+
+def _damped(omega2: float, rate: float) -> float:
+    """Limit of `timestep.damped_limit` for a bound of omega^2 and a damping over mass [1/s]."""
+    omega = math.sqrt(omega2)
+    return timestep.damped_limit(omega, rate / (2.0 * omega))
 
 
 def own_contact(case: Case, mass: float) -> tuple[float, float]:
     """Stiffness [N/mm3] and damping [N s/mm3] of a diaphragm's contact with itself, of areal mass `mass`."""
     s = case.solver
-    stiffness = OWN_STIFFNESS * s.contact_stiffness_N_mm3
+    stiffness = min(OWN_STIFFNESS, 0.5 * s.contact_stiffness_N_mm3)
     return stiffness, timestep.contact_damping(OWN_DAMPING * s.contact_damping, stiffness, mass, mass)
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ddf.case.base import Section
-
-DEFAULT_MASS_SCALING = 24.0
 
 
 class Solver(Section):
@@ -18,8 +16,8 @@ class Solver(Section):
         default=None,
         ge=1,
         le=1e6,
-        description="Factor on the plies' mass (inferred); left out without target_step_s: 24. "
-        "Either this or target_step_s.",
+        description="Factor on the plies' mass (inferred); left out without target_step_s: what the diaphragms' step "
+        "asks, 9.6 times diaphragm_mass_scaling at most. Either this or target_step_s.",
     )
     target_step_s: float | None = Field(
         default=None,
@@ -28,8 +26,10 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     diaphragm_mass_scaling: float = Field(
-        default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
-    )
+        default=2.5, ge=1, le=1e6,
+        description="Factor on the diaphragms' mass where their elements are finest (inferred); elsewhere less, as the "
+        "step asks there, down to a quarter of it.",
+    )  # fmt: skip
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
     step_safety: float = Field(default=0.85, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(
@@ -46,14 +46,16 @@ class Solver(Section):
         default=3.0, gt=0, le=1e4, description="Penalty between layers [N/mm3]: pressure per penetration."
     )
     tool_contact_stiffness_N_mm3: float = Field(
-        default=100.0, gt=0, le=1e4,
+        default=75.0, gt=0, le=1e4,
         description="Penalty on the tool [N/mm3]: pressure per penetration; 3 times beyond 0.1, 6 beyond 0.15 mm.",
     )  # fmt: skip
     in_plane_pressure: bool = Field(
         default=True, description="Contact pressure acts in the plane of the sheets too, as in solid layers."
     )
     self_contact: bool = Field(default=True, description="Sheets that fold touch themselves, with friction.")
-    contact_damping: float = Field(default=0.2, ge=0, le=2, description="Contact damping, fraction of critical.")
+    contact_damping: float = Field(
+        default=0.2, ge=0, le=2, description="Damping of layers on each other, fraction of critical."
+    )
     symmetry: Literal["off", "auto"] = Field(
         default="off",
         description="'auto': a scene that is its own mirror image in x = 0 or y = 0 is computed by half, and stays "
@@ -84,10 +86,3 @@ class Solver(Section):
     check_interval_steps: int = Field(
         default=50, ge=1, le=1_000_000, description="Steps between two checks of energy and stability."
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _default_scaling(cls, raw: Any) -> Any:
-        if isinstance(raw, dict) and raw.get("mass_scaling") is None and raw.get("target_step_s") is None:
-            return raw | {"mass_scaling": DEFAULT_MASS_SCALING}
-        return raw

@@ -17,7 +17,7 @@ FORMINGS = (SINGLE, TURNED, DOUBLE, NO_FRICTION, VACUUM_FIRST)
 COARSE_PLY_MM, COARSE_DIAPHRAGM_MM = 4.0, 5.0
 #: of each repeat: tool's stiffness [N/mm3] and element size of the plies over the case's. Physics knows of neither, so
 #: what they change is scatter. The first is the case as it is.
-NUMERICS: tuple[tuple[float | None, float], ...] = ((None, 1.0), (80.0, 0.96), (60.0, 1.04))
+NUMERICS: tuple[tuple[float | None, float], ...] = ((None, 1.0), (60.0, 0.96), (45.0, 1.04))
 
 AS_SHIPPED = "as-shipped"
 GAP_FACTOR = 2.0

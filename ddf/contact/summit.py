@@ -52,6 +52,7 @@ PUSH = 8 + PRESS
 ROUNDS = 4
 """Newton steps a time step. With one, as for layers, the push came a step late and drove a tight sheet to and fro."""
 ASTRAY = 0.1  # a place that lacks more than this, in cells, after all rounds, is none
+AWAY = 1.0e3  # distance of what is not met [mm]
 ZERO = np.uint64(0)
 GRAZING = 0.2  # cosine between axis and normal below which the sheet is not met but grazed
 
@@ -103,7 +104,7 @@ def summit_forces(y, rates, f, inverse, centre, dx, dy, law, motion, dt, summits
         if cosine < 0.0:
             normal, cosine, d = (-nx, -ny, -nz), -cosine, -d
         if abs(du) > ASTRAY or abs(dv) > ASTRAY or cosine < GRAZING:
-            d = 0.0
+            d = AWAY
         first = np.uint64(4 * ((p - 1) * m + q - 1))
         a, b = weights(spot[0] - p), weights(spot[1] - q)
         v = first_order(rates, first, stride, a, b)[0]

@@ -17,10 +17,10 @@ nodes next to the frame, nor those nearer to the walls than it is deep: as it co
 this rim, and cells that stick there are crushed between frame and platform like struts, on which they press with more
 than the sheet's pressure.
 
-Points that touch, or did a step ago, are pressed together by chunks. Forces and tensors are gathered in `press`, while
-all other forces stand in f. The last row of a block of cells belongs to the next block: it goes to `carry`, which is
-added later in a fixed order. A cell found far from the tool does not look at it for as many steps as it needs at the
-given reach to come near.
+Points that touch, did a step ago or would in this one, are pressed together by chunks. Forces and tensors are gathered
+in `press`, while all other forces stand in f. The last row of a block of cells belongs to the next block: it goes to
+`carry`, which is added later in a fixed order. A cell found far from the tool does not look at it for as many steps as
+it needs at the given reach to come near.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ PLATFORM, NODE, ALONG_COLUMNS, ALONG_ROWS, CENTRE, WALL = range(6)
 centre; the first of two on walls (across x and y)."""
 POINTS = 7
 LONGEST_SLEEP = 16
-ONE, FOUR = np.uint64(1), np.uint64(4)
+ONE, TWO, FOUR = np.uint64(1), np.uint64(2), np.uint64(4)
 
 
 def point_scratch(members: int, widest: int) -> tuple[np.ndarray, ...]:
@@ -256,13 +256,15 @@ def tool_forces(
                     middle = 0.5 * (walls[2 * axis] + walls[2 * axis + 1])
                     inward = 1.0 if x[axis, i, j] < middle else -1.0
                     near = inward * (x[axis, i, j] - (walls[2 * axis] if inward > 0.0 else walls[2 * axis + 1]))
-                    if (near < 0.0 or anchors[WALL + axis, 0, i, j] < FREE) and inverse[i, j] > 0.0:
+                    lands = near + dt * inward * later[ahead + np.uint64(axis)] < 0.0
+                    if (near < 0.0 or lands or anchors[WALL + axis, 0, i, j] < FREE) and inverse[i, j] > 0.0:
                         normal = (inward, 0.0, 0.0) if axis == 0 else (0.0, inward, 0.0)
                         hard = (stiffness * area[i, j], damping * area[i, j], 0.0)
                         p, u, e = load(y, a), load(rates, a), load(later, ahead)
                         t = _add(w, whose, t, WALL + axis, i, j, p, u, e, near, normal, hard, anchors)
             near = x[2, i, j] - z - offset
-            if near < 0.0 or anchors[PLATFORM, 0, i, j] < FREE:
+            lands = near < reach and near + dt * (later[ahead + TWO] - speed) < 0.0
+            if near < 0.0 or lands or anchors[PLATFORM, 0, i, j] < FREE:
                 rim = depth > offset and (
                     i == 1 or i == n - 2 or j == 1 or j == m - 2 or _from_wall(x, walls, i, j) < depth
                 )
@@ -278,13 +280,18 @@ def tool_forces(
             while q < count and owners[1, q] == j:
                 kind, near = owners[0, q], found[4 * q] - offset
                 nearest = min(nearest, near)
-                if near < 0.0 or anchors[kind, 0, i, j] < FREE:
+                if near < reach:  # one that touched a step ago is no farther
+                    normal = (found[4 * q + 1], found[4 * q + 2], found[4 * q + 3])
+                    e = add_scaled(1.0, _middle(later, kind, ahead, beside, below, across), moving)
+                    lands = near + dt * (normal[0] * part(e, 0) + normal[1] * part(e, 1) + normal[2] * part(e, 2)) < 0.0
+                    if not (lands or near < 0.0 or anchors[kind, 0, i, j] < FREE):
+                        q += 1
+                        continue
                     size = 0.25 * (dx[i] if kind >= ALONG_ROWS else _dual(dx, i))
                     size *= dy[j] if kind in (ALONG_COLUMNS, CENTRE) else _dual(dy, j)
                     u = add_scaled(1.0, _middle(rates, kind, a, b, c, d), moving)
-                    e = add_scaled(1.0, _middle(later, kind, ahead, beside, below, across), moving)
                     hard = (stiffness * size, damping * size, mu)
-                    p, normal = load(places, np.uint64(4 * q)), (found[4 * q + 1], found[4 * q + 2], found[4 * q + 3])
+                    p = load(places, np.uint64(4 * q))
                     t = _add(w, whose, t, kind, i, j, p, u, e, near, normal, hard, anchors)
                 q += 1
             if nearest > reach:

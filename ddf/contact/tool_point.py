@@ -3,12 +3,15 @@
 A point at p (tool frame: it moves with the tool) at the distance g from where it touches (signed distance less the
 offset), with the outward normal n, is pushed by
 
-    (K A <-g> - (C A + dt K A) n.v) n   where g < 0 and K A <-g> > (C + dt K) A n.v*
+    (- K A g - (C A + dt K A) n.v) n   where - K A g > (C A + dt K A) n.v*
 
-(v*: the velocity at the end of the step without the tool: by then it would still be pushed; beyond the depths HARD and
-HARDER it is 3 and 6 times as stiff, also against the rate), and held by Coulomb friction on a spring to its anchor
-of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v is the spring's force at the place that the point is
-moving to. With the force goes the tensor
+(v*: the velocity at the end of the step without the tool: at the place that it leads to the point would be pushed.
+Beyond the depths HARD and HARDER it is 3 and 6 times as stiff, also against the rate), and held by Coulomb friction on
+a spring to its anchor of stiffness 0.3 K A. K [N/mm3], A the area it stands for; dt K v is the spring's force at the
+place that the point is moving to. A point that does not touch yet (g > 0) and would with the v it has is stopped in
+this step, by a force that is all viscous in the books; C acts where g < 0.
+
+With the force goes the tensor
 
     J = (dt C A + dt^2 K A) (n n + 0.3 share (1 - n n)),   share: see `friction.coulomb`
 
@@ -29,6 +32,9 @@ from ddf.jit import FAST, INLINE
 
 FREE = 1.0e30
 """First component of an anchor where the point did not touch."""
+BACK = 3.0
+"""C over dt K in formed scenes: a point that was found inside comes out in so many steps and one. In one step, as K
+alone has it, it came out with 1 m/s, faster than pressure could stop it in the next, and parts chattered."""
 HARD, HARDER = 0.1, 0.15
 """Depths [mm] beyond which the penalty is 3 and 6 times as stiff: on apexes, where fibres press with some 10 MPa."""
 
@@ -41,7 +47,7 @@ LATER = np.uint64(6 * CHUNK)  # velocity at the end without the tool, relative t
 NORMAL, NEAR = np.uint64(9 * CHUNK), np.uint64(12 * CHUNK)  # distance from where it touches
 STIFF, DAMPED, FRICTION = (np.uint64(k * CHUNK) for k in (13, 14, 15))  # K A [N/mm], C A [N s/mm], coefficient
 ANCHOR = np.uint64(16 * CHUNK)  # updated
-TOUCHES = np.uint64(19 * CHUNK)  # 1 or 0
+TOUCHES = np.uint64(19 * CHUNK)  # 1 or 0; 1 also where it is stopped before
 GIVE = np.uint64(20 * CHUNK)
 """What the tool does, PRESS rows: force, tensor J (xx, yy, zz, xy, xz, yz) [tonne], viscous part of the force [N]."""
 PRESS = 12
@@ -99,13 +105,15 @@ def press_points(w, count, dt, out):
         spring, stored = _spring(k, depth)
         held, left = _spring(k, before)
         # the mean force acts on the way, but stores less where it has a kink
-        kink = new or not touches or _times(before) != _times(depth)
+        kink = new or not touches or before == 0.0 or _times(before) != _times(depth)
         lost -= 0.5 * (spring + held) * dt * rate + stored - left if kink else 0.0
-        drag = TANGENTIAL * (w[DAMPED + t] + dt * k) * there
-        c = w[DAMPED + t] + dt * k * _times(depth)
-        pushed = touches and spring > c * (nx * ex + ny * ey + nz * ez)
+        c = there * w[DAMPED + t] + dt * k * _times(depth)
+        signed = spring - (1.0 - there) * k * near
+        pushed = signed > c * (nx * ex + ny * ey + nz * ez) and (touches or signed > c * rate)
         push = 1.0 if pushed else 0.0
-        normal = push * (spring - c * rate)
+        normal = push * (signed - c * rate)
+        meets = max(there, push)
+        drag = TANGENTIAL * (there * w[DAMPED + t] + dt * k) * meets
         normal_spring += stored
         # friction
         ax, ay, az = px if new else ax, py if new else ay, pz if new else az
@@ -115,8 +123,8 @@ def press_points(w, count, dt, out):
         vx, vy, vz = vx - rate * nx, vy - rate * ny, vz - rate * nz
         across = sx * (sx - dt * vx) + sy * (sy - dt * vy) + sz * (sz - dt * vz)
         kt = TANGENTIAL * k
-        lost += (1.0 - there) * 0.5 * kt * across  # all that it held where contact has ended
-        kt *= there
+        lost += (1.0 - meets) * 0.5 * kt * across  # all that it held where contact has ended
+        kt *= meets
         tx, ty, tz = -kt * sx - drag * vx, -kt * sy - drag * vy, -kt * sz - drag * vz
         limit = w[FRICTION + t] * max(0.0, normal)
         share = coulomb(length(tx, ty, tz), limit)
@@ -129,10 +137,10 @@ def press_points(w, count, dt, out):
         lost += (1.0 - push) * gave
         slips = share < 1.0
         ax = px - keep * sx if slips else ax
-        w[ANCHOR + t] = ax if touches else FREE
+        w[ANCHOR + t] = ax if meets > 0.0 else FREE
         w[ANCHOR + NEXT + t] = py - keep * sy if slips else ay
         w[ANCHOR + NEXT + NEXT + t] = pz - keep * sz if slips else az
-        w[TOUCHES + t] = there
+        w[TOUCHES + t] = meets
         along = dt * drag * share
         more = push * dt * c - along
         viscous = normal - spring * there

@@ -59,7 +59,9 @@ def _mass(case: Case, value: Value, done: Changes) -> Changes:
     changes: Changes = {"solver.diaphragm_mass_scaling": max(1.0, factor * solver.diaphragm_mass_scaling)}
     if solver.target_step_s is not None:
         return changes | {"solver.target_step_s": factor**0.5 * solver.target_step_s}
-    return changes | {"solver.mass_scaling": max(1.0, factor * (solver.mass_scaling or 1.0))}
+    if solver.mass_scaling is not None:
+        return changes | {"solver.mass_scaling": max(1.0, factor * solver.mass_scaling)}
+    return changes  # plies left to it are as heavy as the diaphragms' step asks
 
 
 def _load_time(case: Case, value: Value, done: Changes) -> Changes:

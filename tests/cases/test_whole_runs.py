@@ -121,7 +121,7 @@ def test_a_clock_that_jumps_changes_nothing(whole, case, tmp_path, monkeypatch):
 
 def test_progress_is_true_and_memory_does_not_grow(case, tmp_path, monkeypatch):
     """Frames and checkpoints all the time: the resident set stays, progress, history and frames say the same."""
-    often = case.output.model_copy(update={"frames_per_stage": 20, "history_interval_steps": 1, "pictures": False,
+    often = case.output.model_copy(update={"frames_per_stage": 12, "history_interval_steps": 1, "pictures": False,
                                            "checkpoint_interval_s": 0.1})  # fmt: skip
     solver = case.solver.model_copy(update={"check_interval_steps": 5})
     monkeypatch.setattr(ddf.run.loop, "REPORT_EVERY_S", 0.0)
@@ -143,7 +143,7 @@ def test_progress_is_true_and_memory_does_not_grow(case, tmp_path, monkeypatch):
     history = run.history()
     assert list(history["step"][1:]) == list(steps)
     times = [time_s for time_s, _ in run.frames("ply-1")]
-    assert len(times) == 1 + 20 * len(case.process.stages)
+    assert len(times) == 1 + 12 * len(case.process.stages)
     apart = np.abs(np.subtract.outer(times, history["time_s"])).min(axis=1)
     assert apart.max() < 1e-6 * told[0].step_s * told[-1].steps  # every frame is of a step that history has too
     assert np.median(resident[-50:]) - np.median(resident[len(resident) // 4 :][:50]) < 8.0  # MiB

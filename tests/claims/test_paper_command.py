@@ -43,7 +43,7 @@ def test_the_first_runs_are_the_shipped_cases():
     ]
     assert case_differences(double, resolved_toml(made["double-repeat-2"])) == [
         "plies.0.element_mm: 4.0 then, 3.84 now", "plies.1.element_mm: 4.0 then, 3.84 now",
-        "solver.tool_contact_stiffness_N_mm3: 100.0 then, 80.0 now", "output.pictures: True then, False now",
+        "solver.tool_contact_stiffness_N_mm3: 75.0 then, 60.0 now", "output.pictures: True then, False now",
     ]  # fmt: skip
     assert made["gap-double-double"].diaphragms.gap_mm == 2.4
     order = [stage.name for stage in made["double-vacuum-first"].process.stages]

@@ -6,6 +6,7 @@ import touching as t
 from differences import gradient
 
 from ddf.contact.tool import settle_row
+from ddf.contact.tool_point import FREE
 
 DX, DY = [1.5, 2.0, 2.5, 1.7], [2.0, 1.4, 2.2]
 
@@ -187,6 +188,30 @@ def test_a_node_pressed_on_the_platform_stays_there_however_stiff_it_is():
         assert np.abs(v).max() < 1e-6
         # of 4 mm2 on the platform and 4 on the plane each corner has a quarter
         assert x[2] == pytest.approx(np.full((2, 2), 0.75 - pressure / (2.0 * stiffness)), abs=1e-6)
+
+
+def test_a_cell_that_falls_is_stopped_in_the_step_in_which_it_would_touch():
+    """From 5 m/s, 0.15 mm a step: found inside only then it would be up to so deep, and come out as fast."""
+    mass, dt = np.full((2, 2), 4.1e-9), 3e-5
+    tool = t.Tool(t.inclined_plane(0.0)[0], ([2.0], [2.0]), stiffness=40.0, friction=0.5)
+    deepest, held = 0.0, []
+    for height in np.linspace(0.76, 0.9, 15):
+        x = np.array([[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [-1.0, 1.0]], np.full((2, 2), height)])
+        v = np.zeros_like(x)
+        v[2], v[0] = -5000.0, 500.0
+        tool.anchors[:] = FREE
+        for _ in range(20):
+            tool.forces(x, v, mass=mass, dt=dt)
+            f = np.zeros_like(x)
+            for i in range(2):
+                settle_row(v[:, i], f[:, i], np.zeros(2), 1.0, tool.press[i], mass[i], 0.0, 1.0, dt)
+            v += dt * f / mass
+            x = x + dt * v
+            deepest = max(deepest, 0.75 - x[2].min())
+            held.append(v[0].max() < 500.0 or (x[2] > 0.75).all())
+    assert 0.0 < deepest < 0.015  # a tenth of the way of a step
+    assert all(held)  # friction acts from the same step on
+    assert np.abs(v[2]).max() < 500.0  # of the rebound, from what it was inside
 
 
 @pytest.mark.parametrize("sideways", [0.0, 3000.0])

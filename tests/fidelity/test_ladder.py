@@ -19,19 +19,23 @@ def auto(request):
     return make
 
 
+SLOWED = 82.0 / 0.07 / 820.0
+"""The ladder was measured with a lift of 820 mm/s; the shipped cases, which have less mass since, lift faster."""
+
+
 def test_rungs_on_the_paper_s_case_are_what_was_measured(auto):
     case = auto("tetrahedron-0-90")
     assert shorter_side(case) == pytest.approx(350.0)
-    assert mean_lift_speed(case) == pytest.approx(820.0)
+    assert mean_lift_speed(case) == pytest.approx(820.0 * SLOWED)
     sizes = [
         (there.plies[0].element_mm, there.diaphragms.element_mm, sum(s.duration_s for s in there.process.stages))
         for there in (at(case, rung) for rung in LADDER[1:])
     ]
     wanted = [
-        (4.0, 5.0, 0.125), (6.0, 7.5, 0.25), (4.0, 5.0, 0.25), (3.0, 3.75, 0.25), (4.0, 5.0, 0.5), (2.0, 2.5, 0.5),
+        (4.0, 5.0, 0.105), (6.0, 7.5, 0.21), (4.0, 5.0, 0.21), (3.0, 3.75, 0.21), (4.0, 5.0, 0.42), (2.0, 2.5, 0.42),
     ]  # fmt: skip
-    for found, measured in zip(sizes, wanted, strict=True):
-        assert found == pytest.approx(measured)
+    for found, (ply, skin, time) in zip(sizes, wanted, strict=True):
+        assert found == pytest.approx((ply, skin, SLOWED * time), rel=1e-3)
 
 
 def test_a_rung_changes_elements_and_times_and_nothing_else(auto):
@@ -42,12 +46,13 @@ def test_a_rung_changes_elements_and_times_and_nothing_else(auto):
     assert there.tool == case.tool
     assert there.materials == case.materials
     assert [s.tool_lift_mm for s in there.process.stages] == [s.tool_lift_mm for s in case.process.stages]
-    # twice the time at half the damping: each stage is damped as much
+    # so much more time at as much less damping: each stage is damped as much
+    longer = 2.0 * SLOWED
     for new, old in zip(there.process.stages, case.process.stages, strict=True):
-        assert new.duration_s == pytest.approx(2.0 * old.duration_s)
+        assert new.duration_s == pytest.approx(longer * old.duration_s, rel=1e-3)
         if old.mass_damping_1_s is not None:
-            assert new.mass_damping_1_s == pytest.approx(0.5 * old.mass_damping_1_s)
-    assert there.solver.mass_damping_1_s == pytest.approx(0.5 * case.solver.mass_damping_1_s)
+            assert new.mass_damping_1_s == pytest.approx(old.mass_damping_1_s / longer, rel=1e-3)
+    assert there.solver.mass_damping_1_s == pytest.approx(case.solver.mass_damping_1_s / longer, rel=1e-3)
 
 
 def test_elements_go_with_the_ply_and_a_fast_lift_is_slowed(auto):

@@ -36,7 +36,7 @@ def _case(shipped, *overrides):
 
 
 def test_a_run_that_loses_its_hold_goes_back_and_on_with_a_smaller_step(too_long, request, tmp_path):
-    case = _case(request.config.rootpath / "cases")
+    case = _case(request.config.rootpath / "cases", "process.stages.0.duration_s=0.04")
     result = run_case(case, tmp_path / "run", threads=1)
     assert result.stop_reason == "finished"
     info = json.loads((tmp_path / "run/run.json").read_text())

@@ -30,7 +30,10 @@ def _formed(mass: float, time: float) -> tuple[Trial, list[FloatArray]]:
     for stage in HEMISPHERE["process"]["stages"]:
         damping = {key: stage[key] / time for key in ("mass_damping_1_s",) if key in stage}
         stages.append(stage | {"duration_s": time * stage["duration_s"]} | damping)
-    solver = {"mass_scaling": 24.0 * mass, "diaphragm_mass_scaling": 2.5 * mass, "mass_damping_1_s": 30.0 / time}
+    shipped = build_scene(make_case(HEMISPHERE))
+    skin = shipped.case.solver.diaphragm_mass_scaling
+    solver = {"mass_scaling": mass * shipped.sheets[1].mass_scaling, "diaphragm_mass_scaling": mass * skin,
+              "mass_damping_1_s": 30.0 / time}  # fmt: skip
     scene = build_scene(make_case(HEMISPHERE, process={"stages": stages}, solver=solver))
     trial = run_guarded(scene)
     return trial, boundary_profile(ply_surface(scene, scene.state, 1)).deformed if trial.finished else []
