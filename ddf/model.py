@@ -143,7 +143,7 @@ class Model(NamedTuple):
     mass: np.ndarray  # (N,) [tonne], scaled
     inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node at its given velocity
     line_mass: np.ndarray  # (N,) the same; below 0 for nodes that do not leave the mirror plane, see `elements.tension`
-    area: np.ndarray  # (N,) reference area of a node, times its share of contact's stiffness [mm2]
+    area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
     bar1: np.ndarray
     bar2: np.ndarray
     cell: np.ndarray  # (N,) reference area of a cell [mm2]

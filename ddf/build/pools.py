@@ -21,14 +21,8 @@ LEAST_NODE = 0.25
 pushes its nodes with far more than the sliver's own stiffness: at their own mass they were shot away."""
 
 
-def node_pools(
-    stack: Stack, sheets: np.ndarray, masses: list[float], shares: FloatArray, rims: list[np.ndarray]
-) -> dict[str, Any]:
-    """Node pools of the model: masses, areas, bars, cells, triples.
-
-    shares (n, m) of the areal mass and of the area by which contact acts that a diaphragm's nodes have; rims: RIM
-    records of each sheet.
-    """
+def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float], rims: list[np.ndarray]) -> dict[str, Any]:
+    """Node pools of the model: masses, areas, bars, cells, triples; rims: RIM records of each sheet."""
     names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
     centres, weights = [], []
@@ -44,7 +38,7 @@ def node_pools(
         else:
             dx, dy = np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)
             cells = dx[:, None] * dy[None, :]
-            values["area"], values["cell"] = shares * corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
+            values["area"], values["cell"] = corner_sum(cells), np.pad(cells, ((0, 1), (0, 1)))
             values["cover"] = np.ones((n, m))
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False

@@ -16,7 +16,7 @@ from ddf.build.rest import state_at_rest
 from ddf.build.rim import RINGS, no_rims, rim_entries, rim_lists
 from ddf.build.sheets import sheet_records
 from ddf.build.stack import Stack, flat_positions, mesh_stack, mesh_tool, nominal_height
-from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, diaphragm_shares, step_limit
+from ddf.build.step import TONNE_PER_GSM_MM2, TONNE_PER_KG_M3, areal_masses, damp_fibres, step_limit
 from ddf.build.summits import first_spots, summit_records
 from ddf.case import Case, hyperelastic_material
 from ddf.contact.bed import MASSES
@@ -49,14 +49,13 @@ def _whole_scene(case: Case, even: bool, rings: int) -> Scene:
     terms = rubber.abaqus_terms
     sheets, laws, tables, tangents = sheet_records(case, stack, terms)
     scale, masses = areal_masses(case, stack, terms, rubber.density_kg_m3 * TONNE_PER_KG_M3, tangents)
-    shares = diaphragm_shares(case, terms, stack.diaphragm)
     damp_fibres(case, sheets, masses, tangents)
     limit = step_limit(case, stack, terms, masses, tangents)
     dt = limit if case.solver.step_s is None else case.solver.step_s
     sheets["bed_stiffness"] = [min(case.solver.tool_contact_stiffness_N_mm3, MASSES * m / dt**2) for m in masses]
     none = no_rims(1)
     rims = none + [rim_entries(ply.active) for ply in stack.plies] + none
-    pools = node_pools(stack, sheets, masses, shares, rims)
+    pools = node_pools(stack, sheets, masses, rims)
     pairs, exposed, places = contact_pairs(case, stack, masses, sheets)
     blocks = row_blocks(sheets)
     peaks = summit_records(tool_mesh, case.diaphragms.element_mm, 0.5 * stack.thickness[0])
@@ -74,7 +73,7 @@ def _whole_scene(case: Case, even: bool, rings: int) -> Scene:
         tool_sheet=-1 if tool_field is None else 0, tool_offset=0.5 * stack.thickness[0],
         tool_stiffness=solver.tool_contact_stiffness_N_mm3,
         tool_damping=BACK * dt * solver.tool_contact_stiffness_N_mm3,
-        tool_mass=masses[0] * float(shares.min()), tool_friction=friction.diaphragm_tool, tool_boxed=True,
+        tool_mass=masses[0], tool_friction=friction.diaphragm_tool, tool_boxed=True,
         tool_walls=np.array(walls),
         summits=peaks, gravity=np.zeros(3), dt=dt,
     )  # fmt: skip

@@ -49,7 +49,7 @@ def sheet_records(case: Case, stack: Stack, terms):
             s["a1"], s["a2"] = ply.spacing
             s["eh1"], s["eh2"] = material.membrane_modulus_N_mm
             s["bend1"], s["bend2"] = material.bending_rigidity_Nmm
-            s["bend_in_plane"] = material.in_plane_bending_Nmm
+            s["bend_in_plane"] = material.in_plane_rigidity
             s["fold_radius"] = 0.5 * (d.thickness_mm + material.thickness_mm)
             s["bed"] = 0.0 if case.tool is None else _bed(stack.thickness[: k + 1])
             s["bed_friction"] = min(case.friction.diaphragm_tool, case.friction.ply_diaphragm)

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ddf.build.stack import Stack
 from ddf.case import Case
 from ddf.case.schema import WovenMaterial
 from ddf.dynamics import timestep
 from ddf.materials import ogden
-from ddf.mesh.diaphragm import DiaphragmMesh
 from ddf.mesh.ply import PlyMesh
 from ddf.model import SHELL_PLY
 
@@ -25,10 +23,6 @@ MOST_SCALING = 9.6
 SPARE = 2.2
 """Mass of plies over what the diaphragms' step asks: layers pressed deep in one another are stiffer than its bound."""
 ROUNDS = 6
-LEAST_SHARE, LEAST_CONTACT = 0.25, 0.4
-"""Least mass and contact stiffness per area of a diaphragm's node over those where elements are finest, and least
-contact stiffness [N/mm3]: with less, diaphragms under vacuum lay deeper in each other than where contact becomes
-stiffer than the step allows for, and there a flat stack shook for good."""
 TONNE_PER_GSM_MM2 = 1e-12
 TONNE_PER_KG_M3 = 1e-12
 
@@ -36,7 +30,7 @@ TONNE_PER_KG_M3 = 1e-12
 def areal_masses(
     case: Case, stack: Stack, terms, density: float, tangents: list[float]
 ) -> tuple[list[float], list[float]]:
-    """Mass scaling of each ply and areal mass of each sheet as clamped, where elements are finest [tonne/mm2].
+    """Mass scaling of each ply and areal mass of each sheet as clamped [tonne/mm2].
 
     Plies without a factor or a step of their own are as heavy as the diaphragms' step asks, `SPARE` included, up to
     `MOST_SCALING`.
@@ -63,32 +57,14 @@ def areal_masses(
     return scales, masses()
 
 
-def diaphragm_shares(case: Case, terms, mesh: DiaphragmMesh) -> NDArray[np.float64]:
-    """Mass per area of a diaphragm's nodes over that where elements are finest, (n, m): what the same step asks.
-
-    Longer elements are softer, by their shorter side (of what the bound of the step has for square ones half is for
-    what forming adds); `LEAST_SHARE` is the least. The stiffness of contact, which sets the step too, goes with it.
-    What lies outside the plies is most of a diaphragm, and its inertia has a say in how the sheets come down.
-    """
-    mu, bending = ogden.initial_shear_modulus(terms), ogden.bending_rigidity(terms, case.diaphragms.thickness_mm)
-    shortest = []
-    for line in (mesh.x_lines, mesh.y_lines):
-        size = np.pad(np.diff(line), 1, mode="edge")
-        shortest.append(np.minimum(size[1:], size[:-1]))
-    q = 2.0 / np.minimum(shortest[0][:, None], shortest[1][None, :]) ** 2
-    d = case.diaphragms
-    stiff = timestep.diaphragm_stiffness(mu, d.thickness_mm, bending if d.bending else 0.0, q)
-    least = max(LEAST_SHARE, min(1.0, LEAST_CONTACT / case.solver.contact_stiffness_N_mm3))
-    return np.clip(stiff / stiff.max(), least, 1.0)
-
-
 def ply_omega2(case: Case, number: int, ply: PlyMesh, material: WovenMaterial, shear: float, mass: float) -> float:
     """Bound of omega^2 of ply `number` of the case, of whichever formulation."""
     contact = 2.0 * case.solver.contact_stiffness_N_mm3
     if case.plies[number].formulation == "shell-membrane":
         stiff, transverse = stiffest(material), material.transverse_shear_N_mm
         return timestep.shell_membrane_omega2(stiff, shear, transverse, ply.spacing, contact, mass)
-    return timestep.ply_omega2(shear, material.bending_rigidity_Nmm, ply.spacing, contact, mass)
+    first, second = (max(d, material.in_plane_rigidity) for d in material.bending_rigidity_Nmm)
+    return timestep.ply_omega2(shear, (first, second), ply.spacing, contact, mass)
 
 
 def stiffest(material: WovenMaterial) -> float:

@@ -35,12 +35,12 @@ class WovenMaterial(Section):
     bending_rigidity_Nmm: NonNegativePair = Field(
         description="Bending rigidity per mm of width [N mm]: one number, or one for each fibre family."
     )
-    in_plane_bending_Nmm: float = Field(
-        default=0.0,
+    in_plane_bending_Nmm: float | None = Field(
+        default=None,
         ge=0,
         le=1e6,
-        description="Rigidity of the tows against bending in the ply's plane, per mm of width [N mm] "
-        "(inferred: not measured, hence 0).",
+        description="Rigidity of the tows against bending in the ply's plane, per mm of width [N mm]; left out: the "
+        "least of bending_rigidity_Nmm, that of fibres which bend one by one, in whatever direction (inferred).",
     )
     transverse_shear_N_mm: float = Field(
         default=20.0,
@@ -74,6 +74,11 @@ class WovenMaterial(Section):
         description="Smallest tangent shear modulus of the monotone law [MPa] (inferred: small against "
         "every measured slope, large enough to be stable).",
     )
+
+    @property
+    def in_plane_rigidity(self) -> float:
+        """`in_plane_bending_Nmm` [N mm], or what it is where it is left out."""
+        return min(self.bending_rigidity_Nmm) if self.in_plane_bending_Nmm is None else self.in_plane_bending_Nmm
 
     @model_validator(mode="before")
     @classmethod

@@ -26,10 +26,8 @@ class Solver(Section):
         description="Stable step of the plies to reach by adding mass to them [s]. Either this or mass_scaling.",
     )
     diaphragm_mass_scaling: float = Field(
-        default=2.5, ge=1, le=1e6,
-        description="Factor on the diaphragms' mass where their elements are finest (inferred); elsewhere less, as the "
-        "step asks there, down to a quarter of it.",
-    )  # fmt: skip
+        default=2.5, ge=1, le=1e6, description="Factor on the diaphragms' mass (inferred)."
+    )
     mass_damping_1_s: float = Field(default=30.0, ge=0, le=1e5, description="Mass damping [1/s].")
     step_safety: float = Field(default=0.85, gt=0, le=1, description="Step as a fraction of the stable one.")
     step_s: float | None = Field(

@@ -50,9 +50,9 @@ def examine_materials(case: Case, found: Findings) -> None:
             )
             found.warn(("materials", name, "shear_law"), problem, "'monotone', the closest law that is stable")
     for number, ply in enumerate(case.plies):
-        if ply.formulation == "shell-membrane" and woven_material(case, ply.material).in_plane_bending_Nmm > 0.0:
+        if ply.formulation == "shell-membrane" and woven_material(case, ply.material).in_plane_bending_Nmm:
             problem = "shell-membrane elements have no in-plane bending, which the material asks for"
-            found.fault(("plies", number, "formulation"), problem, "lattice, or in_plane_bending_Nmm = 0")
+            found.fault(("plies", number, "formulation"), problem, "lattice, or leave in_plane_bending_Nmm out")
     name = case.diaphragms.material
     terms = hyperelastic_material(case, name).abaqus_terms
     modulus = ogden.initial_shear_modulus(terms)

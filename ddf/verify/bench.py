@@ -120,7 +120,7 @@ def _records(sheets: Sequence[Sheet]) -> tuple[np.ndarray, FloatArray]:
             r["kind"], r["shear"] = PLY, len(tables)
             r["eh1"], r["eh2"] = s.material.membrane_modulus_N_mm
             r["bend1"], r["bend2"] = s.material.bending_rigidity_Nmm
-            r["bend_in_plane"] = s.material.in_plane_bending_Nmm
+            r["bend_in_plane"] = s.material.in_plane_rigidity
             tables.append(shear_law.shear_table(*entered_law(s.material)))
         else:
             r["kind"], r["face"], r["rigidity"] = DIAPHRAGM, PRESSURE_BOTTOM, s.rigidity

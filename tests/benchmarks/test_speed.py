@@ -176,7 +176,7 @@ def test_self_contact_of_a_flat_stack(benchmark, make_scene, scene):
     own = made.model.pairs["slave"] == made.model.pairs["master"]
     assert sim.work.idle[own].all()
     assert not sim.work.idle[~own].any()
-    benchmark.pedantic(sim._self_contact.seek, args=(0.1,), rounds=40)
+    benchmark.pedantic(sim.seek, args=(0.1,), rounds=40)
     sim.close()
     benchmark.extra_info["percent_of_steps"] = round(100.0 * benchmark.stats.stats.min / fastest, 2)
     assert benchmark.stats.stats.min < 0.03 * fastest

@@ -49,7 +49,7 @@ def test_published_case():
     case = load_case(next(path for path in CASES if path.stem == "tetrahedron-0-90"))
     assert case.frame.length_mm == 1320
     assert case.plies[0].name == "ply-1"
-    assert case.process.duration_s == pytest.approx(0.21)
+    assert case.process.duration_s == pytest.approx(0.24)
     assert case.process.largest_lift_mm == 82
     assert case.solver.mass_scaling is None
     assert resolve_gap_mm(case) == pytest.approx(0.7)
