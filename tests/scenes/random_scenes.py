@@ -151,4 +151,4 @@ def _stages(rng: random.Random, order: str, height: float) -> list[dict[str, Any
     else:  # the lower diaphragm alone comes down; the rest follows with the cavity
         follow = {"name": "follow", "duration_s": 0.06, "mass_damping_1_s": 100.0, "cavity_pressure_kPa": GENTLE_KPA}
         stages = [slow, full, follow, cavity | {"duration_s": 0.04} | damped, lift | damped]
-    return [*stages, {"name": "hold", "duration_s": 0.03, "mass_damping_1_s": 300.0}]
+    return [*stages, {"name": "hold", "duration_s": 0.05, "mass_damping_1_s": 300.0}]

@@ -6,8 +6,6 @@ from random_scenes import random_case
 
 DOZEN = (1, 2, 3, 4, 9, 22, 25, 28, 32, 34, 39, 43)
 """Among the quickest: all tools, fillets down to none, 1 to 4 plies, most orders of loading."""
-CRUSHED = 43
-"""Four frictionless plies crushed on a sharp ridge: where families of one run nearly alike, bars swing by up to 1 %."""
 
 
 @pytest.mark.parametrize("number", DOZEN)
@@ -15,6 +13,4 @@ def test_scene_comes_to_rest(number, tmp_path):
     row = judged_run(random_case(number), tmp_path / "run", frames=False)
     assert row["end"] == "settled", row
     assert row["ply_in_tool_mm"] < 0.5
-    if number == CRUSHED and row["strain_percent"] >= 0.3:
-        pytest.xfail(f"bars of nearly alike families swing by {row['strain_percent']:.2g} %")
     assert row["strain_percent"] < 0.3

@@ -138,11 +138,13 @@ def test_ready_made_sweeps_change_what_they_say():
     lift_first, together, box_first = (case.process.stages for case in cases["loading"])
     assert [s.name for s in lift_first] == ["evacuate-cavity", "lift", "draw-down", "evacuate-box", "hold"]
     assert [s.name for s in box_first] == ["evacuate-cavity", "draw-down", "evacuate-box", "lift", "hold"]
+    assert [s.duration_s for s in lift_first] == pytest.approx([0.02, 0.07, 0.1, 0.03, 0.02])
+    assert [s.duration_s for s in box_first] == pytest.approx([0.02, 0.2, 0.03, 0.07, 0.02])  # hung free: more time
     assert [s.mass_damping_1_s for s in lift_first] == [None, None, 100.0, 100.0, 300.0]
     assert [s.mass_damping_1_s for s in box_first] == [None, 100.0, 100.0, 100.0, 300.0]
     assert [case.diaphragms.element_max_mm for case in cases["loading"]] == pytest.approx([30.0, 30.0, 82.0 / 5.0])
     assert len(together) == 4
-    assert [s.tool_lift_mm for s in together[1:3]] == pytest.approx([82.0 * 7 / 10, 82.0])
+    assert [s.tool_lift_mm for s in together[1:3]] == pytest.approx([82.0 * 10 / 13, 82.0])
     assert [s.box_pressure_kPa for s in together[1:3]] == [94.0, 0.0]
     assert [[p.orientation_deg for p in case.plies] for case in cases["layup"]] == [[0], [45], [45, 0], [0, 45]]
     assert [case.plies[0].element_mm for case in cases["mesh"]] == [8.0, 6.0, 4.0, 3.0]
