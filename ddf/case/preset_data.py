@@ -27,7 +27,8 @@ PRESET_DATA: dict[str, dict[str, Any]] = {
 PRESET_SOURCES: dict[str, str] = {
     "plain-weave-6k-320": "Plain weave carbon, 6k tows, 320 g/m2. A. J. Thompson, J. P.-H. Belnoue, "
     "S. R. Hallett, Composites Part B 202 (2020) 108357. The published shear modulus is negative between "
-    "6.77 and 10.84 deg of shear, which is why the monotone law is the default.",
+    "6.77 and 10.84 deg of shear, which is why the monotone law is the default. The rigidity in the plane of the ply "
+    "is inferred: that of fibres which bend one by one.",
     "silicone-ogden": "Silicone diaphragm, Ogden in the Abaqus form, measured by Chen et al. on 1.56 mm "
     "silicone and used by A. J. Thompson, J. P.-H. Belnoue, S. R. Hallett, Composites Part B 202 (2020) "
     "108357. The density is inferred.",

@@ -3,8 +3,9 @@
 Measured on the paper's 0/90 case, a ply of 350 mm over a tool of 82 mm lifted at 1.17 m/s on average
 (docs/speed-accuracy.md): mean distance of the formed outline from that of the finest rung. Rungs that another one
 beats in both time and error are left out (6 mm elements are no nearer than 4 mm in half the durations, and 3 and 2 mm
-at the shipped ones no nearer than 4 mm: what is left of inertia decides). Larger masses are shorter durations by another name. For other plies elements and errors go with
-the ply's shorter side, the same number of elements across it: what is expected there is an extrapolation.
+at the shipped ones no nearer than 4 mm: what is left of inertia decides). Larger masses are shorter durations by
+another name. For other plies elements and errors go with the ply's shorter side, the same number of elements across
+it: what is expected there is an extrapolation.
 
 The same on every rung, because measured there: plies are lattices (shell-membrane plies cost 41 times as much and
 give the same part), diaphragms bend (without it 23 wrinkles more), sheets touch themselves where they fold (a few per
@@ -41,7 +42,7 @@ LADDER = (
     Rung("quick", 4.0, 5.0, 0.5, 0.38),
     Rung("coarse", 4.0, 5.0, 1.0, 0.32),
     Rung("coarse-slow", 4.0, 5.0, 2.0, 0.088),
-    Rung("medium-slow", 3.0, 3.75, 2.0, 0.08),
+    Rung("medium-slow", 3.0, 3.75, 2.0, 0.06),
     Rung("fine-slow", 2.0, 2.5, 2.0, 0.0),
 )
 """From the cheapest to the finest, which is what the others are measured against."""
