@@ -60,6 +60,12 @@ def plan_axes(figure: Any, box: Box, title: str, place: tuple[int, int, int] = (
     return axes
 
 
+def label_logarithmic(axis: Any) -> None:
+    """Label an axis with plain numbers at powers of ten and at 2 and 5 between them."""
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else "")
+
+
 def scale_bar(axes: Any, box: Box, length_mm: float | None = None) -> None:
     """A bar of a round length near the lower right corner, with its length in mm."""
     width = box[1] - box[0]

@@ -38,6 +38,8 @@ def draw_study(title: str, results: Sequence[Result], front: Sequence[Result], c
                 _label(axes, (result.pair[0], max(value, least)), str(number), result in front)
         axes.axvline(finest.pair[0], color=figures.MUTED, linewidth=1, linestyle=":")
         axes.set(xscale="log", yscale="log")
+        for axis in (axes.xaxis, axes.yaxis):
+            figures.label_logarithmic(axis)
         axes.margins(0.12)
         axes.set_xlabel("wall time of the steps [s]", fontsize=figures.LABEL_PT)
         axes.set_ylabel(label, fontsize=figures.LABEL_PT)

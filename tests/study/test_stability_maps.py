@@ -10,6 +10,9 @@ from ddf.cli import main
 from ddf.study.stability import registry
 from ddf.study.stability.map import CAUGHT, STABLE, WARNED, WRONG, Limit, Map, RuleLine, Spot
 from ddf.study.stability.registry import LIMITS, load_limit
+from ddf.study.stability.shear_bands import row_angles
+from ddf.verify.problem import Options
+from ddf.verify.scenes import fabric_of
 
 NO_LIMIT = ("fibre-step", "shear-bands-monotone")  # safe everywhere
 
@@ -24,6 +27,18 @@ def test_safe_side_is_safe_and_the_other_is_caught(name):
     assert all(spot.verdict == STABLE for spot in safe)
     assert bool(beyond) == (name not in NO_LIMIT)
     assert all(spot.verdict in CAUGHT and spot.guard for spot in beyond)
+
+
+def test_fibres_that_bend_in_the_plane_give_bands_a_width_of_their_own():
+    steepest = {}  # deg/mm
+    for rigidity in (0.0, 0.34):
+        fabric = fabric_of(Options()).model_copy(update={"shear_law": "published", "in_plane_bending_Nmm": rigidity})
+        steepest[rigidity] = [np.abs(np.diff(row_angles(fabric, size, 9.0))).max() / size for size in (2.0, 4.0)]
+    fine, coarse = steepest[0.0]
+    assert fine == pytest.approx(2.0 * coarse, rel=0.1)  # the same step, from one row to the next
+    fine, coarse = steepest[0.34]
+    assert fine == pytest.approx(coarse, rel=0.1)
+    assert fine < 0.35
 
 
 def _limit(name, verdict, safe):

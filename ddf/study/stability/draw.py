@@ -21,11 +21,6 @@ MARGIN = 0.12  # beside the spots, of their range
 DASHES = ("-", "--", ":", "-.")
 
 
-def _minor(value: float, _: Any) -> str:
-    """Labels of a logarithmic axis between its powers of ten: 2 and 5."""
-    return f"{value:g}" if f"{value:e}"[0] in "25" else ""
-
-
 def _limits(axes: Any, chart: Map) -> None:
     """All spots with a margin on every side; lines do not move it."""
     for logarithmic, values, limit in (
@@ -65,8 +60,7 @@ def draw_map(limit: Limit, chart: Map) -> Any:
         axes.set_xscale("symlog", linthresh=chart.symlog_x)
     for axis, logarithmic in ((axes.xaxis, chart.log_x and not chart.symlog_x), (axes.yaxis, chart.log_y)):
         if logarithmic:
-            axis.set_major_formatter(lambda value, _: f"{value:g}")
-            axis.set_minor_formatter(_minor)
+            figures.label_logarithmic(axis)
     _limits(axes, chart)
     for number, line in enumerate(chart.lines):
         axes.plot(line.x, line.y, DASHES[number % len(DASHES)], color=figures.COLOURS[2], linewidth=1.5,
