@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.contact.quad import add_scaled, expect, load, part, scaled
 from ddf.jit import INLINE
+from ddf.quad import add_scaled, expect, load, part, scaled
 
 OUTSIDE = 1.0e3
 UP = np.uint64(4)

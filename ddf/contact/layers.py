@@ -50,8 +50,8 @@ from numba import njit
 
 from ddf.contact.friction import TANGENTIAL, coulomb, length
 from ddf.contact.patch import first_order, interpolate, spread, weights
-from ddf.contact.quad import add_scaled, part, quad, quad_with
 from ddf.jit import FAST, INLINE
+from ddf.quad import add_scaled, part, quad, quad_with
 
 HARD, HARDENING = 0.2, 3.0
 """Part of the offset beyond which the penalty is stiffer, and how much. Only where the tool bears the stack do sheets

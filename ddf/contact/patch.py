@@ -19,8 +19,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ddf.contact.quad import add_scaled, load, scaled, store
 from ddf.jit import FAST, INLINE
+from ddf.quad import add_scaled, load, scaled, store
 
 FOUR, EIGHT = np.uint64(4), np.uint64(8)
 

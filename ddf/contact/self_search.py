@@ -20,11 +20,11 @@ from ddf.contact.friction import length
 from ddf.contact.layers import UNKNOWN, pack_rows
 from ddf.contact.normal_cones import STACK, TILE, begin, find_boxes, find_cones, tile_count, tile_levels, walk
 from ddf.contact.patch import interpolate, weights
-from ddf.contact.quad import part
 from ddf.contact.rim import extend, sheet_rim
 from ddf.contact.self_contact import far
 from ddf.jit import FAST
 from ddf.model import Model, State, sheet_scalars, sheet_vectors
+from ddf.quad import part
 
 WIDEST = math.radians(60.0)
 """Half angle of normals up to which a part of a sheet is not searched: its points are then at least pi r/2 apart."""

@@ -23,7 +23,6 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.patch import first_order, interpolate, weights
-from ddf.contact.quad import part
 from ddf.contact.tool_point import (
     ANCHOR,
     DAMPED,
@@ -42,6 +41,7 @@ from ddf.contact.tool_point import (
     set_vector,
 )
 from ddf.jit import FAST
+from ddf.quad import part
 
 SUMMIT = 6
 """Columns of a summit: S and the vertex's outward axis (tool frame) [mm]."""

@@ -30,7 +30,6 @@ from numba import njit
 
 from ddf.contact.field import look_forward, sample
 from ddf.contact.friction import length
-from ddf.contact.quad import add_scaled, load, part, quad_with, scaled, store
 from ddf.contact.tool_point import (
     ANCHOR,
     CHUNK,
@@ -53,6 +52,7 @@ from ddf.contact.tool_point import (
     set_vector,
 )
 from ddf.jit import FAST, INLINE
+from ddf.quad import add_scaled, load, part, quad_with, scaled, store
 
 PLATFORM, NODE, ALONG_COLUMNS, ALONG_ROWS, CENTRE, WALL = range(6)
 """Points of a node: on the platform; on the tool itself, with the middles of two of its cell's edges and the cell's

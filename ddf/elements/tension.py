@@ -52,6 +52,7 @@ from numba import njit
 
 from ddf.elements.cells import filled
 from ddf.jit import FAST
+from ddf.quad import load, store, transposed
 
 LINES = 16
 """Fibre lines that are solved side by side."""
@@ -62,14 +63,15 @@ LINES = 16
 (
     X, Y, Z, U, V, W,  # place [mm] and velocity [mm/s]; y is normal to the mirror plane, if there is one
     MASS, BAR, KEPT,  # inverse mass [1/tonne], width [mm], tension [N]
-    EX, EY, EZ,  # direction
     PIVOT,  # of the elimination; afterwards, in the string's step, what the next node's velocity adds
     PULL, COUPLED,  # reduced right side, then impulse [N s]; share of the next bar's impulse in it
-    STIFF,  # stiffness of the string [tonne]
-) = (np.uint64(k * LINES) for k in range(16))  # fmt: skip
-FIELDS = 17  # one more than there are: places 2048 bytes apart would fight for few lines of the cache
+) = (np.uint64(k * LINES) for k in range(12))  # fmt: skip
+EX, EY, EZ = X, Y, Z  # direction, once the places are not needed any more
+STIFF = BAR  # stiffness of the string [tonne], likewise
+FIELDS = 13  # one more than there are: places a power of two of bytes apart would fight for few lines of the cache
 NEXT = np.uint64(FIELDS * LINES)
 LANES = np.uint64(LINES)
+ONE, TWO, FOUR = np.uint64(1), np.uint64(2), np.uint64(4)
 
 
 def line_scratch(nodes: int) -> int:
@@ -194,13 +196,14 @@ def _solve(w, nodes, law, string):
     """Correct the tension along lines of so many nodes that have been gathered in w."""
     first, last = NEXT, NEXT * np.uint64(nodes)
     w[:NEXT] = 0.0
-    w[last + EX : last + np.uint64(2) * NEXT] = 0.0
+    w[last + PIVOT : last + np.uint64(2) * NEXT] = 0.0
     ahead = (law[0], law[1], law[2], law[4])
     o = first
     while o < last:
         _forward(w, o, ahead)
         o += NEXT
-    w[last - NEXT + COUPLED : last - NEXT + STIFF] = 0.0
+    w[last + STIFF : last + STIFF + LANES] = 0.0
+    w[last - NEXT + COUPLED : last - NEXT + COUPLED + LANES] = 0.0
     per_dt = 1.0 / law[4]
     o = last - NEXT
     if not string:
@@ -244,58 +247,97 @@ def pull_lines(x, v, inverse_mass, bar, kept, law, string, mirror, a, b, first, 
 def pull_rows(x, v, inverse_mass, bar, kept, law, string, mirror, low, high, first, end, work):
     """The same along the second grid direction for nodes first..end-1 of rows low..high-1."""
     r, q, s = (1, 0, 2) if mirror == 0 else (0, 1, 2)
-    for lane in range(LINES):
-        i, o = min(low + lane, high - 1), np.int64(NEXT) + lane
-        for row in (x[r, i], x[q, i], x[s, i], v[r, i], v[q, i], v[s, i], inverse_mass[i], bar[i], kept[i]):
-            _turn(row, first, end, work, o)
-            o += LINES
+    o = np.int64(NEXT)
+    for values in (x[r], x[q], x[s], v[r], v[q], v[s], inverse_mass, bar, kept):
+        _turn(values, low, high, first, end, work, o)
+        o += LINES
     _solve(work, end - first, law, string)
-    for lane in range(high - low):
-        i = low + lane
-        _turn_back(work, np.int64(NEXT + U) + lane, v[r, i], first, end)
-        _turn_back(work, np.int64(NEXT + V) + lane, v[q, i], first, end)
-        _turn_back(work, np.int64(NEXT + W) + lane, v[s, i], first, end)
-        _turn_back(work, np.int64(NEXT + KEPT) + lane, kept[i], first, end)
+    _turn_back(work, np.int64(NEXT + U), v[r], low, high, first, end)
+    _turn_back(work, np.int64(NEXT + V), v[q], low, high, first, end)
+    _turn_back(work, np.int64(NEXT + W), v[s], low, high, first, end)
+    _turn_back(work, np.int64(NEXT + KEPT), kept, low, high, first, end)
 
 
 @njit(**FAST)
 def _gather(values, a, b, first, end, work, o):
     """One kind of numbers of the nodes of lines a..b-1, side by side; lanes left over get those of the last line."""
+    if b - a == LINES:
+        q, p, row = np.uint64(o), np.uint64(first * values.shape[1] + a), np.uint64(values.shape[1])
+        for _ in range(first, end):
+            for j in range(np.uint64(0), LANES, FOUR):
+                store(work, q + j, load(values, p + j))
+            p += row
+            q += NEXT
+        return
     for i in range(first, end):
-        row = values[i]
-        if b - a == LINES:
-            for j in range(LINES):
-                work[o + j] = row[a + j]
-        else:
-            for j in range(LINES):
-                work[o + j] = row[min(a + j, b - 1)]
+        for j in range(LINES):
+            work[o + j] = values[i, min(a + j, b - 1)]
         o += FIELDS * LINES
 
 
 @njit(**FAST)
 def _scatter(work, o, values, a, b, first, end):
     """One kind of numbers of lines a..b-1 back."""
+    if b - a == LINES:
+        q, p, row = np.uint64(o), np.uint64(first * values.shape[1] + a), np.uint64(values.shape[1])
+        for _ in range(first, end):
+            for j in range(np.uint64(0), LANES, FOUR):
+                store(values, p + j, load(work, q + j))
+            p += row
+            q += NEXT
+        return
     for i in range(first, end):
-        row = values[i]
         for j in range(b - a):
-            row[a + j] = work[o + j]
+            values[i, a + j] = work[o + j]
         o += FIELDS * LINES
 
 
 @njit(**FAST)
-def _turn(row, first, end, work, o):
-    """Numbers first..end-1 of a line that lies in memory along itself."""
-    for j in range(first, end):
-        work[o] = row[j]
-        o += FIELDS * LINES
+def _turn(values, low, high, first, end, work, o):
+    """One kind of numbers of nodes first..end-1 of rows low..high-1, node by node, rows side by side.
+
+    Four rows and four nodes at a time; lanes left over get those of the last row.
+    """
+    row = values.shape[1]
+    for lane in range(0, LINES, 4):
+        i, j = min(low + lane, high - 1), min(low + lane + 1, high - 1)
+        k, l = min(low + lane + 2, high - 1), min(low + lane + 3, high - 1)
+        p, q = np.uint64(i * row + first), np.uint64(j * row + first)
+        r, s = np.uint64(k * row + first), np.uint64(l * row + first)
+        to, node = np.uint64(o + lane), first
+        while node + 4 <= end:
+            a, b, c, d = transposed(load(values, p), load(values, q), load(values, r), load(values, s))
+            store(work, to, a)
+            store(work, to + NEXT, b)
+            store(work, to + NEXT + NEXT, c)
+            store(work, to + NEXT + NEXT + NEXT, d)
+            p, q, r, s, to, node = p + FOUR, q + FOUR, r + FOUR, s + FOUR, to + FOUR * NEXT, node + 4
+        while node < end:
+            work[to], work[to + ONE] = values[i, node], values[j, node]
+            work[to + TWO], work[to + TWO + ONE] = values[k, node], values[l, node]
+            to, node = to + NEXT, node + 1
 
 
 @njit(**FAST)
-def _turn_back(work, o, row, first, end):
-    """Numbers first..end-1 of such a line back."""
-    for j in range(first, end):
-        row[j] = work[o]
-        o += FIELDS * LINES
+def _turn_back(work, o, values, low, high, first, end):
+    """One kind of numbers of such rows back."""
+    row = values.shape[1]
+    for lane in range(0, high - low, 4):
+        at, node, i = np.uint64(o + lane), first, low + lane
+        p, step = np.uint64(i * row + first), np.uint64(row)
+        while i + 4 <= high and node + 4 <= end:
+            a, b, c, d = transposed(
+                load(work, at), load(work, at + NEXT), load(work, at + NEXT + NEXT), load(work, at + NEXT + NEXT + NEXT)
+            )
+            store(values, p, a)
+            store(values, p + step, b)
+            store(values, p + step + step, c)
+            store(values, p + step + step + step, d)
+            p, at, node = p + FOUR, at + FOUR * NEXT, node + 4
+        while node < end:
+            for k in range(min(4, high - i)):
+                values[i + k, node] = work[at + np.uint64(k)]
+            at, node = at + NEXT, node + 1
 
 
 @njit(**FAST)

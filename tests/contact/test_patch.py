@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from ddf.contact.patch import interpolate, patch_centres, weights
-from ddf.contact.quad import store
+from ddf.quad import store
 
 
 @njit

@@ -1,16 +1,18 @@
-"""Four doubles in one register: the little explicit SIMD that contact needs (numba has none).
+"""Four doubles in one register: the little explicit SIMD that kernels need (numba has none).
 
-A node of a master sheet is stored as (x, y, z, cover): one load, and each weight multiplies all components.
-With fastmath `scaled` and `add_scaled` become one packed instruction each.
+Contact stores a node of a master sheet as (x, y, z, cover): one load, and each weight multiplies all components; with
+fastmath `scaled` and `add_scaled` become one packed instruction each. Fibre lines are gathered four numbers at a time.
 """
 
 from __future__ import annotations
 
 from llvmlite import ir
-from numba import types
+from numba import njit, types
 from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.extending import intrinsic, models, register_model
+
+from ddf.jit import INLINE
 
 VECTOR = ir.VectorType(ir.DoubleType(), 4)
 SINGLES = ir.VectorType(ir.FloatType(), 4)
@@ -146,3 +148,27 @@ def part(typing, value, index):
         return builder.extract_element(args[0], args[1])
 
     return types.float64(QUAD, types.int64), build
+
+
+def _shuffled(places):
+    """Intrinsic of two quads: one made of the numbers at four places of both, those of the second from 4 on."""
+
+    @intrinsic
+    def shuffle(typing, first, second):
+        def build(context, builder, signature, args):
+            return builder.shuffle_vector(*args, ir.Constant(ir.VectorType(ir.IntType(32), 4), places))
+
+        return QUAD(QUAD, QUAD), build
+
+    return shuffle
+
+
+_even, _odd = _shuffled([0, 4, 2, 6]), _shuffled([1, 5, 3, 7])
+_low, _high = _shuffled([0, 1, 4, 5]), _shuffled([2, 3, 6, 7])
+
+
+@njit(**INLINE)
+def transposed(a, b, c, d):
+    """The four quads of the first, second, third and fourth numbers of four quads."""
+    p, q, r, s = _even(a, b), _odd(a, b), _even(c, d), _odd(c, d)
+    return _low(p, r), _low(q, s), _high(p, r), _high(q, s)
