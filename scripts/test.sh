@@ -10,3 +10,4 @@ mypy
 lint-imports
 python -c "import ddf.kernel_cache as cache; cache.use_cache(); cache.warm_kernels()"
 python -m pytest -n 2 --dist loadfile "$@"
+python -m pytest tests/benchmarks -q -n 0 -o addopts="" --benchmark-disable  # that they still run; nothing is timed
