@@ -3,9 +3,8 @@
     python scripts/crossings_of_run.py RUN [--last]
 
 Prints of each frame and pair how many edges pass through triangles (of plies: where there is cloth), and how many of
-these lie inside: farther than 4 mm
-(two cells of 2 mm, where contact fades out) from the edges of the plies, and than 6 mm from the tool's axis. Exit code
-1 if there are any of the latter.
+these lie inside: farther than 4 mm (two cells of 2 mm, where contact fades out) from the edges of the plies, and than
+6 mm from the tool's axis. Exit code 1 if there are any of the latter.
 """
 
 from __future__ import annotations

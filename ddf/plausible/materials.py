@@ -44,9 +44,10 @@ def examine_materials(case: Case, found: Findings) -> None:
             found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f"<= {solid:.3g}; check the units")
         span = falling_range(weave)
         if span is not None:
+            width = "" if weave.in_plane_rigidity > 0.0 else " one element wide"
             problem = (
                 f"the shear force falls between {span[0]:.3g} and {span[1]:.3g} deg of shear, where shear gathers in "
-                "bands one element wide"
+                f"bands{width}"
             )
             found.warn(("materials", name, "shear_law"), problem, "'monotone', the closest law that is stable")
     for number, ply in enumerate(case.plies):

@@ -17,7 +17,8 @@ PLY_FRICTION = (0.0, 0.14, 0.28, 0.42)  # 0.28 measured, 0 compared with it in s
 FILLETS_MM = (2.5, 5.0, 10.0)
 MESH_FACTORS = (2.0, 1.5, 1.0, 0.75)
 FREE = 2.0
-"""In the time of the stage as it is they came down so fast that plies buckled through themselves in folds."""
+"""Times the duration of the vacuum's first stage where sheets hang free: in the duration of the other orders they came
+down so fast that a ply buckled through itself in the mouth of a fold."""
 
 
 def friction(case: Case) -> list[Point]:
