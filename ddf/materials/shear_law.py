@@ -8,8 +8,8 @@ work per reference area is dW/dg = N_s cos g, and dW/ds = N_s over s = sin g.
 
 `published` takes the law as entered. Where N_s cos g falls, homogeneous shear is unstable: it localises into
 bands, one element wide where no rigidity in the plane gives them a width. `monotone` is the closest law, in least
-squares of M = N_s cos g over g, whose slope dM/dg is nowhere below h times a small floor: M - floor h g is an isotonic regression. G then is not below the
-floor either.
+squares of M = N_s cos g over g, whose slope dM/dg is nowhere below h times a small floor: M - floor h g is an
+isotonic regression. G then is not below the floor either.
 """
 
 from __future__ import annotations
