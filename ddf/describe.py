@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ddf.case import woven_material
+from ddf.past_runs import slowness
 from ddf.scene import Scene
 
 BYTES_A_NODE = 8 * (3 * 3 + 8) + 4 * 2
@@ -37,6 +38,19 @@ def seconds_estimate(scene: Scene) -> float:
 def speedup(threads: int) -> float:
     """How much faster steps are on so many threads, each with a core, than on one."""
     return 1.0 / (ONE_BY_ONE + (1.0 - ONE_BY_ONE) / threads)
+
+
+def expected_seconds(scene: Scene, threads: int) -> float:
+    """Wall time of the steps on this machine [s]: the estimate, and how it did with the last runs here."""
+    return seconds_estimate(scene) * slowness()[0] / speedup(threads)
+
+
+def estimate_source() -> str:
+    """On what `expected_seconds` rests."""
+    runs = slowness()[1]
+    if runs == 0:
+        return "for cores of about 2.5 GHz: no run has ended here yet"
+    return f"as the last {runs} runs here went" if runs > 1 else "as the last run here went"
 
 
 def describe_scene(scene: Scene) -> str:
@@ -76,13 +90,14 @@ def describe_scene(scene: Scene) -> str:
             f"  {name}: {path.time[k]:g} to {path.time[k + 1]:g} s, ends at cavity {path.cavity[k + 1]:g} kPa, "
             f"box {path.box[k + 1]:g} kPa, lift {path.lift[k + 1]:g} mm"
         )
-    seconds, arrays = seconds_estimate(scene), memory_bytes(scene) / 2**20
+    arrays = memory_bytes(scene) / 2**20
     memory = arrays + LIBRARIES_MIB + (PICTURES_MIB if case.output.pictures else 0.0)
     lines += [
         "",
         "cost",
         f"  step {model.dt:.3g} s (stable {scene.step_limit:.3g} s with safety), {scene.steps} steps",
         f"  about {memory:.0f} MiB of memory ({arrays:.0f} of them arrays)",
-        f"  about {seconds:.0f} s of steps on one core of 2.5 GHz, {seconds / speedup(2):.0f} s on two",
+        f"  about {expected_seconds(scene, 1):.0f} s of steps on one core, {expected_seconds(scene, 2):.0f} s on two "
+        f"({estimate_source()})",
     ]
     return "\n".join(lines)

@@ -24,6 +24,14 @@ def copied(scene: Scene) -> Scene:
     return dataclasses.replace(scene, state=State(*(copy.deepcopy(a) for a in scene.state)))
 
 
+@pytest.fixture(autouse=True)
+def past_runs(monkeypatch, tmp_path_factory) -> Path:
+    """Estimates of time as on a machine where nothing has run yet; the file in which runs of the test are noted."""
+    file = tmp_path_factory.mktemp("past") / "past-runs.json"
+    monkeypatch.setattr("ddf.past_runs._file", lambda: file)
+    return file
+
+
 @pytest.fixture(scope="session")
 def copy_scene() -> Callable[[Scene], Scene]:
     """Makes the same scene with a state of its own."""

@@ -48,7 +48,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ddf.contact.friction import TANGENTIAL, coulomb, length
+from ddf.contact.friction import TANGENTIAL, coulomb
 from ddf.contact.patch import first_order, interpolate, spread, weights
 from ddf.jit import FAST, INLINE
 from ddf.quad import add_scaled, part, quad, quad_with
@@ -81,15 +81,15 @@ ONE, FOUR, NEXT = np.uint64(1), np.uint64(4), np.uint64(CHUNK)
     BEFORE,  # depth taken in the last step, 0 if it did not touch
     DU, DV, U, V,  # Newton step, new place
     NX, NY, NZ, D, GAP,  # normal, height above the surface, gap
-    GUU, GUV, GVV, INVERSE,  # metric and inverse of its determinant
+    GUU, GUV, INVERSE,  # metric and inverse of its determinant
     WX, WY, WZ, BU, BV,  # w, and n.(N_k,a v_k)
     OLD_RATE, OLD_DRAG, RATE, DRAG,  # rate of the gap and viscous normal force, in the last step and now
     FN,  # normal force
     FX, FY, FZ, GX, GY, GZ, HX, HY, HZ,  # what `spread` takes: f,  e^1 n - r^1 f,  e^2 n - r^2 f  with e^a = d f^a
     SX, SY, SZ, SC, UX, UY, UZ, UC, VX, VY, VZ, VC,  # S, S_1, S_2: place on the surface and cover
     AX, AY, AZ, CX, CY, CZ,  # S_11, S_22
-) = (np.uint64(k * CHUNK) for k in range(63))  # fmt: skip
-FIELDS = 63
+) = (np.uint64(k * CHUNK) for k in range(62))  # fmt: skip
+FIELDS = 62
 
 
 def chunk_scratch(members: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -201,8 +201,7 @@ def _fetch(w, patch, nodes, count, x, area, place, slip, y, cols):
         w[WHOLE + t] = area[node]
         w[BEFORE + t] = max(0.0, -place[2, node])
         w[SU + t], w[SV + t] = slip[0, node], slip[1, node]
-        a, b = weights(w[TU + t]), weights(w[TV + t])
-        s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, a, b)
+        s, su, sv, suu, svv = interpolate(y, np.uint64(patch[0, t]), stride, w[TU + t], w[TV + t])
         _put(w, SX + t, s)
         _put(w, UX + t, su)
         _put(w, VX + t, sv)
@@ -219,7 +218,7 @@ def _fetch_rates(w, patch, nodes, count, v, y, cols):
         if w[AREA + t] == 0.0 and w[BEFORE + t] == 0.0:
             continue
         node = nodes[t]
-        m, mu, mv = first_order(y, np.uint64(patch[0, t]), stride, weights(w[TU + t]), weights(w[TV + t]))
+        m, mu, mv = first_order(y, np.uint64(patch[0, t]), stride, w[TU + t], w[TV + t])
         m = add_scaled(w[DU + t], mu, add_scaled(w[DV + t], mv, m))
         nx, ny, nz = w[NX + t], w[NY + t], w[NZ + t]
         w[WX + t], w[WY + t], w[WZ + t] = v[0, node] - part(m, 0), v[1, node] - part(m, 1), v[2, node] - part(m, 2)
@@ -272,7 +271,6 @@ def _project(w, count, end_u, end_v, sign, offset):
         w[GAP + t] = sign * d - offset
         w[GUU + t] = guu
         w[GUV + t] = guv
-        w[GVV + t] = gvv
         w[INVERSE + t] = inv
 
 
@@ -321,10 +319,13 @@ def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
     normal = tangential = rubbed = damped = 0.0
     inverse_dt, hard, growth = 1.0 / dt, HARD * offset, offset * dt / GROWTH_S
     for t in range(count):
-        ux, uy, uz, vx, vy, vz = _tangents(w, t)
-        guu, guv, gvv, inv = w[GUU + t], w[GUV + t], w[GVV + t], w[INVERSE + t]
+        guu = w[GUU + t]
         nx, ny, nz, d = w[NX + t], w[NY + t], w[NZ + t], w[D + t]
         wx, wy, wz = w[WX + t], w[WY + t], w[WZ + t]
+        ux, uy, uz, vx, vy, vz = _tangents(w, t)
+        # unit vectors along S_1 and across it: e_1 = S_1 / |S_1|, e_2 = (S_2 - lean S_1) / |S_2 - lean S_1|
+        inverse_u, inverse_v = 1.0 / np.sqrt(guu), np.sqrt(guu * w[INVERSE + t])
+        lean = w[GUV + t] * inverse_u * inverse_u
         k, c = stiffness * w[AREA + t], damping * w[AREA + t] * slow
         rate = sign * (nx * wx + ny * wy + nz * wz)
         # no deeper than the last step's depth and the rate can account for
@@ -333,32 +334,27 @@ def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
         w[GAP + t] = -depth
         spring, stored = _spring(k, depth, hard)
         fn = max(0.0, spring - c * rate)
-        # slip rate with lower, then upper components; the spring's slip if nothing gave way
+        # slip rate m, and the spring's slip p if nothing gave way, o before
         ru = wx * ux + wy * uy + wz * uz + d * w[BU + t]
         rv = wx * vx + wy * vy + wz * vz + d * w[BV + t]
-        su, sv = (gvv * ru - guv * rv) * inv, (guu * rv - guv * ru) * inv
-        mx, my, mz = su * ux + sv * vx, su * uy + sv * vy, su * uz + sv * vz
-        first, second = np.sqrt(guu), np.sqrt(gvv - guv * guv / guu)  # length of S_1, and of S_2 across it
-        ov = w[SV + t] / second
-        ou = w[SU + t] / first - ov * guv / guu
-        tu, tv = ou + dt * su, ov + dt * sv
-        px, py, pz = tu * ux + tv * vx, tu * uy + tv * vy, tu * uz + tv * vz
+        m1, m2 = ru * inverse_u, (rv - lean * ru) * inverse_v
+        o1, o2 = w[SU + t], w[SV + t]
+        p1, p2 = o1 + dt * m1, o2 + dt * m2
         kt, cs = TANGENTIAL * k, TANGENTIAL * c
-        tx, ty, tz = -kt * px - cs * mx, -kt * py - cs * my, -kt * pz - cs * mz
+        t1, t2 = -kt * p1 - cs * m1, -kt * p2 - cs * m2
         limit = mu * fn
-        share = coulomb(length(tx, ty, tz), limit)
-        tx, ty, tz = tx * share, ty * share, tz * share
-        stretch2 = px * px + py * py + pz * pz
+        share = coulomb(np.sqrt(t1 * t1 + t2 * t2), limit)
+        t1, t2 = t1 * share, t2 * share
+        stretch2 = p1 * p1 + p2 * p2
         # where friction slips the spring keeps what it alone can carry
         keep = min(1.0, limit / max(kt * np.sqrt(stretch2), 1e-30)) if share < 1.0 else 1.0
-        w[SU + t] = keep * (tu * guu + tv * guv) / first
-        w[SV + t] = keep * tv * second
+        w[SU + t], w[SV + t] = keep * p1, keep * p2
         normal += stored
         tangential += kt * stretch2 * keep * keep
         held = kt * keep  # friction less the spring's part of it is viscous
-        viscous = (tx + held * px) * mx + (ty + held * py) * my + (tz + held * pz) * mz
+        viscous = (t1 + held * p1) * m1 + (t2 + held * p2) * m2
         # the spring's mean force on the way it gave way; all that it held where the contact has opened
-        across = ou * (guu * tu + guv * tv) + ov * (guv * tu + gvv * tv)
+        across = o1 * p1 + o2 * p2
         rubbed += 0.5 * kt * (1.0 - keep) * (across + keep * stretch2) - dt * viscous
         opened = stiffness * (w[WHOLE + t] - w[AREA + t]) if w[BEFORE + t] > 0.0 else 0.0
         rubbed += 0.5 * TANGENTIAL * opened * across
@@ -378,12 +374,14 @@ def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
         edge = cover < WHOLE_COVER and w[AREA + t] > 0.0
         slope = -stored * 6.0 * (1.0 - cover) / (cover * (3.0 - 2.0 * cover)) if edge else 0.0
         eu, ev = slope * w[UC + t], slope * w[VC + t]
-        cu, cv = (gvv * eu - guv * ev) * inv, (guu * ev - guv * eu) * inv
-        tx, ty, tz = tx + cu * ux + cv * vx, ty + cu * uy + cv * vy, tz + cu * uz + cv * vz
-        fx, fy, fz = sign * fn * nx + tx, sign * fn * ny + ty, sign * fn * nz + tz
-        cu = d * (tx * ux + ty * uy + tz * uz)
-        cv = d * (tx * vx + ty * vy + tz * vz)
-        eu, ev = (gvv * cu - guv * cv) * inv, (guu * cv - guv * cu) * inv
+        t1, t2 = t1 + eu * inverse_u, t2 + (ev - lean * eu) * inverse_v
+        # contravariant components
+        cv = t2 * inverse_v
+        cu = t1 * inverse_u - lean * cv
+        fx = sign * fn * nx + cu * ux + cv * vx
+        fy = sign * fn * ny + cu * uy + cv * vy
+        fz = sign * fn * nz + cu * uz + cv * vz
+        eu, ev = d * cu, d * cv
         du, dv = w[DU + t], w[DV + t]
         w[FN + t] = fn
         w[FX + t], w[FY + t], w[FZ + t] = fx, fy, fz

@@ -38,52 +38,57 @@ def _mix(b0, b1, b2, y0, y1, y2):
     return add_scaled(b0, y0, add_scaled(b1, y1, scaled(b2, y2)))
 
 
-@njit(**FAST)
-def _along_row(y, k, b):
-    """One row of a patch: value, first and second derivative along v; k: where its first node begins in y."""
-    y0, y1, y2 = load(y, k), load(y, k + FOUR), load(y, k + EIGHT)
-    return _mix(b[0], b[1], b[2], y0, y1, y2), _mix(b[3], b[4], b[5], y0, y1, y2), _mix(1.0, -2.0, 1.0, y0, y1, y2)
+@njit(**INLINE)
+def _line(y0, y1, y2, t):
+    """Value, twice the slope and second derivative at t:  y_1 + t d/2 + (t^2/2 + 1/8) c,  d + 2 t c  and  c,
+
+    with d = y_2 - y_0,  c = y_0 - 2 y_1 + y_2. The same as with `weights`, in two thirds of the operations.
+    """
+    d, c = add_scaled(-1.0, y0, y2), add_scaled(-2.0, y1, add_scaled(1.0, y0, y2))
+    return add_scaled(0.5 * t * t + 0.125, c, add_scaled(0.5 * t, d, y1)), add_scaled(2.0 * t, c, d), c
 
 
 @njit(**FAST)
-def interpolate(y, k, stride, a, b):
+def _along_row(y, k, t):
+    """`_line` of one row of a patch along v; k: where its first node begins in y."""
+    return _line(load(y, k), load(y, k + FOUR), load(y, k + EIGHT), t)
+
+
+@njit(**FAST)
+def interpolate(y, k, stride, s, t):
     """The place on the surface, S_1, S_2, S_11 and S_22 there, as quads.
 
-    y: the nodes (4 N M,); k: where the patch's first node begins, stride: from row to row; a, b from `weights`.
+    y: the nodes (4 N M,); k: where the patch's first node begins, stride: from row to row; s, t: place from its centre.
     """
-    r0, s0, c0 = _along_row(y, k, b)
-    r1, s1, c1 = _along_row(y, k + stride, b)
-    r2, s2, c2 = _along_row(y, k + stride + stride, b)
+    r0, s0, c0 = _along_row(y, k, t)
+    r1, s1, c1 = _along_row(y, k + stride, t)
+    r2, s2, c2 = _along_row(y, k + stride + stride, t)
+    value, twice, second = _line(r0, r1, r2, s)
+    a0, a1, a2, _, _, _ = weights(s)
     return (
-        _mix(a[0], a[1], a[2], r0, r1, r2),
-        _mix(a[3], a[4], a[5], r0, r1, r2),
-        _mix(a[0], a[1], a[2], s0, s1, s2),
-        _mix(1.0, -2.0, 1.0, r0, r1, r2),
-        _mix(a[0], a[1], a[2], c0, c1, c2),
-    )
+        value, scaled(0.5, twice), _mix(0.5 * a0, 0.5 * a1, 0.5 * a2, s0, s1, s2), second, _mix(a0, a1, a2, c0, c1, c2)
+    )  # fmt: skip
 
 
 @njit(**FAST)
-def first_order(y, k, stride, a, b):
+def first_order(y, k, stride, s, t):
     """Value and first derivatives only, of any nodal quads; arguments as in `interpolate`."""
-    r0, s0, _ = _along_row(y, k, b)
-    r1, s1, _ = _along_row(y, k + stride, b)
-    r2, s2, _ = _along_row(y, k + stride + stride, b)
-    return (
-        _mix(a[0], a[1], a[2], r0, r1, r2),
-        _mix(a[3], a[4], a[5], r0, r1, r2),
-        _mix(a[0], a[1], a[2], s0, s1, s2),
-    )
+    r0, s0, _ = _along_row(y, k, t)
+    r1, s1, _ = _along_row(y, k + stride, t)
+    r2, s2, _ = _along_row(y, k + stride + stride, t)
+    value, twice, _ = _line(r0, r1, r2, s)
+    a0, a1, a2, _, _, _ = weights(s)
+    return value, scaled(0.5, twice), _mix(0.5 * a0, 0.5 * a1, 0.5 * a2, s0, s1, s2)
 
 
 @njit(**FAST)
 def _add_row(buffer, k, b, p, q):
     """Add  b p + b' q  to the three nodes of a row."""
-    store(buffer, k, add_scaled(b[0], p, add_scaled(b[3], q, load(buffer, k))))
-    k += FOUR
-    store(buffer, k, add_scaled(b[1], p, add_scaled(b[4], q, load(buffer, k))))
-    k += FOUR
-    store(buffer, k, add_scaled(b[2], p, add_scaled(b[5], q, load(buffer, k))))
+    for j in range(3):
+        # the sum apart from what is there, which may have been stored just now
+        more = add_scaled(b[j], p, scaled(b[3 + j], q))
+        store(buffer, k, add_scaled(1.0, load(buffer, k), more))
+        k += FOUR
 
 
 @njit(**FAST)

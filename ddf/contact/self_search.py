@@ -19,7 +19,7 @@ from numba import njit
 from ddf.contact.friction import length
 from ddf.contact.layers import UNKNOWN, pack_rows
 from ddf.contact.normal_cones import STACK, TILE, begin, find_boxes, find_cones, tile_count, tile_levels, walk
-from ddf.contact.patch import interpolate, weights
+from ddf.contact.patch import interpolate
 from ddf.contact.rim import extend, sheet_rim
 from ddf.contact.self_contact import far
 from ddf.jit import FAST
@@ -51,7 +51,7 @@ def foot(y, centre, x, y0, z, u, v):
         if p < 0:
             return u, v, d, UNKNOWN
         first = np.uint64(4 * ((p - 1) * m + q - 1))
-        s, su, sv, suu, svv = interpolate(y, first, np.uint64(4 * m), weights(u - p), weights(v - q))
+        s, su, sv, suu, svv = interpolate(y, first, np.uint64(4 * m), u - p, v - q)
         ux, uy, uz, vx, vy, vz = part(su, 0), part(su, 1), part(su, 2), part(sv, 0), part(sv, 1), part(sv, 2)
         rx, ry, rz = x - part(s, 0), y0 - part(s, 1), z - part(s, 2)
         guu, gvv, guv = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, ux * vx + uy * vy + uz * vz

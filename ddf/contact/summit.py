@@ -64,7 +64,7 @@ def _look(y, centre, spot, place):
     i, j = min(max(int(spot[0] + 0.5), 0), n - 1), min(max(int(spot[1] + 0.5), 0), m - 1)
     p, q = np.int64(centre[i, j, 0]), np.int64(centre[i, j, 1])
     first, stride = np.uint64(4 * ((p - 1) * m + q - 1)), np.uint64(4 * m)
-    at, su, sv, suu, svv = interpolate(y, first, stride, weights(spot[0] - p), weights(spot[1] - q))
+    at, su, sv, suu, svv = interpolate(y, first, stride, spot[0] - p, spot[1] - q)
     ux, uy, uz, vx, vy, vz = part(su, 0), part(su, 1), part(su, 2), part(sv, 0), part(sv, 1), part(sv, 2)
     rx, ry, rz = place[0] - part(at, 0), place[1] - part(at, 1), place[2] - part(at, 2)
     guu, gvv, guv = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, ux * vx + uy * vy + uz * vz
@@ -107,7 +107,7 @@ def summit_forces(y, rates, f, inverse, centre, dx, dy, law, motion, dt, summits
             d = AWAY
         first = np.uint64(4 * ((p - 1) * m + q - 1))
         a, b = weights(spot[0] - p), weights(spot[1] - q)
-        v = first_order(rates, first, stride, a, b)[0]
+        v = first_order(rates, first, stride, spot[0] - p, spot[1] - q)[0]
         u = (part(v, 0), part(v, 1), part(v, 2) - speed)
         fx, fy, fz = u
         for k in range(3):

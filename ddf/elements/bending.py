@@ -5,8 +5,9 @@ tangents, and k_a = c_a . n:
 
     U = 1/2 B1 [(1 - r) k1^2 + r |c1|^2] + the same for 2,   B_a = D_a A_a / a_a^4,   r = D_in_plane / D_a
 
-The curvature's normal part only is stiff unless an in-plane rigidity is entered. A_a is the area of the
-triple of nodes. With K = (1 - r) B k and p = sum K_a (c_a - k_a n) / |N| the gradient spreads as
+The curvature's normal part only is stiff where r = 0. Where r = 1 for both families fibres bend one by one, and no
+normal is needed. A_a is the area of the triple of nodes. With K = (1 - r) B k and p = sum K_a (c_a - k_a n) / |N|
+the gradient spreads as
 
     dU/dc_a = K_a n + r B_a c_a,   dU/dt1 = t2 x p,   dU/dt2 = p x t1
 """
@@ -84,14 +85,38 @@ def _shares(x, weight, triple1, triple2, i, im, ip, start, before, after, offset
 
 
 @njit(**FAST)
+def _shares_without_normal(x, triple1, triple2, i, im, ip, start, before, after, offset, count, k, w):
+    """The same where k1 = k2 = 0."""
+    for c in range(np.uint64(3)):
+        for t in range(count):
+            j = start + t
+            o = t + offset + ONE + c * Y
+            middle = 2.0 * x[c, i, j]
+            f1 = k[2] * triple1[i, j] * (x[c, ip, j] + x[c, im, j] - middle)
+            f2 = k[3] * triple2[i, j] * (x[c, i, j + after] + x[c, i, j - before] - middle)
+            w[OWN + o] = 2.0 * (f1 + f2)
+            w[UP + o], w[DOWN + o] = -f1, -f1
+            w[RIGHT + o], w[LEFT + o] = -f2, -f2
+
+
+@njit(**FAST)
+def _part(x, weight, triple1, triple2, i, im, ip, start, before, after, offset, count, k, w):
+    """`_shares`, by whichever of the two."""
+    if k[0] == 0.0 and k[1] == 0.0:
+        _shares_without_normal(x, triple1, triple2, i, im, ip, start, before, after, offset, count, k, w)
+    else:
+        _shares(x, weight, triple1, triple2, i, im, ip, start, before, after, offset, count, k, w)
+
+
+@njit(**FAST)
 def _tile(x, weight, triple1, triple2, i, im, ip, start, count, k, w):
     """Shares of the nodes of a tile; the first and the last of the row, which lack a neighbour, by themselves."""
     head = ONE if start == NONE else NONE
     tail = ONE if start + count == np.uint64(x.shape[2]) else NONE
-    _shares(x, weight, triple1, triple2, i, im, ip, start, NONE, ONE, NONE, head, k, w)
-    _shares(x, weight, triple1, triple2, i, im, ip, start + head, ONE, ONE, head, count - head - tail, k, w)
+    _part(x, weight, triple1, triple2, i, im, ip, start, NONE, ONE, NONE, head, k, w)
+    _part(x, weight, triple1, triple2, i, im, ip, start + head, ONE, ONE, head, count - head - tail, k, w)
     last = count - tail
-    _shares(x, weight, triple1, triple2, i, im, ip, start + last, ONE, NONE, last, tail, k, w)
+    _part(x, weight, triple1, triple2, i, im, ip, start + last, ONE, NONE, last, tail, k, w)
 
 
 @njit(**FAST)

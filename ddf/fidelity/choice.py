@@ -11,7 +11,7 @@ from typing import Any
 from ddf.build import build_scene, load_path
 from ddf.case import Case
 from ddf.case.load import load_case
-from ddf.describe import seconds_estimate, speedup
+from ddf.describe import estimate_source, expected_seconds
 from ddf.errors import CaseError, MeshError, UsageError
 from ddf.fidelity.ladder import LADDER, MEASURED_SIDE_MM, Rung, at, shorter_side
 from ddf.fidelity.rules import obstacle
@@ -64,6 +64,7 @@ class Choice:
             "  error: mean distance of the formed outline from the finest rung's, expected from the paper's 0/90 case, "
             "where it was measured" + ("" if self._measured() else f" on a ply of {MEASURED_SIDE_MM:g} mm")
         )
+        found.append(f"  times: estimates, {estimate_source()}")
         if self.chosen.rung.ply_mm is None:
             found.append("  a net shows shear and outline of a ply, no wrinkles, no friction, no bridging")
         else:
@@ -159,7 +160,7 @@ def _step(case: Case, rung: Rung, threads: int, scale: float, symmetric: bool) -
     if not why and rung.ply_mm is not None:  # the tool costs next to nothing in a step, and seconds to mesh
         solver = there.solver if symmetric else there.solver.model_copy(update={"symmetry": "off"})
         bare = there.model_copy(update={"tool": None, "solver": solver})
-        seconds = seconds_estimate(build_scene(bare)) / speedup(threads)
+        seconds = expected_seconds(build_scene(bare), threads)
     return Step(rung, there, seconds, error, why)
 
 

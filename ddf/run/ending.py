@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ddf.describe import seconds_estimate, speedup
 from ddf.monitors.audit import Check, time_check
+from ddf.past_runs import learn
 from ddf.postprocess import finish_folder, report_of
 from ddf.provenance import peak_memory_mib, provenance
 from ddf.run.loop import Runner
@@ -25,6 +27,8 @@ def finish(runner: Runner, reason: str) -> RunResult:
     if reason == "finished":
         with watch("post-processing"):
             result.checks, result.plies = finish_folder(scene, out, runner.energy, runner.sim.time, result.notes)
+        share = runner.sim.step / scene.steps
+        learn(share * seconds_estimate(scene) / speedup(runner.threads), watch.seconds["steps"])
         if runner.choice is not None and runner.choice.seconds is not None:
             result.checks.append(time_check(watch.seconds["steps"], runner.choice.seconds))
     write_info(runner, reason, "", result.checks)

@@ -38,7 +38,7 @@ class Ply:
         self.triple1[[0, -1]], self.triple2[:, [0, -1]] = 0.0, 0.0
         sheet = np.zeros(1, SHEET)
         sheet["a1"] = sheet["a2"] = 1.0
-        sheet["bend1"] = sheet["bend2"] = 0.34
+        sheet["bend1"] = sheet["bend2"] = sheet["bend_in_plane"] = 0.34  # as woven materials have it by default
         self.sheet = sheet[0]
         self.inverse = np.full((n, n), 1.0 / 1.6e-9)
         self.table = shear_table(*shear_samples("monotone", 0.5, 0.002, [0.4576, -7.394, 36.36, -59.31, 32.37], None))

@@ -9,7 +9,7 @@ from ddf.quad import store
 
 @njit
 def _quads(y, k, stride, s, t, out):
-    parts = interpolate(y, np.uint64(k), np.uint64(stride), weights(s), weights(t))
+    parts = interpolate(y, np.uint64(k), np.uint64(stride), s, t)
     store(out, np.uint64(0), parts[0])
     store(out, np.uint64(4), parts[1])
     store(out, np.uint64(8), parts[2])

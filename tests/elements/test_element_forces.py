@@ -38,9 +38,10 @@ def test_shear_of_opposite_sign_is_the_gradient_too(cut_ply):
     assert p.relative(p.ply_shear(patch, x, table, SEAM), expected) < 1e-6
 
 
-@pytest.mark.parametrize("in_plane", [0.0, 0.05])
-def test_bending_is_the_gradient_of_its_energy(cut_ply, in_plane):
+@pytest.mark.parametrize(("rigidity", "in_plane"), [(0.2, 0.0), (0.2, 0.05), (0.2, 0.2)])
+def test_bending_is_the_gradient_of_its_energy(cut_ply, rigidity, in_plane):
     patch, x = cut_ply
+    patch.sheet["bend1"] = rigidity
     patch.sheet["bend_in_plane"] = in_plane
     expected = -gradient(lambda y: p.ply_bending_energy(patch, y), x)
     assert p.relative(p.ply_bending(patch, x, SEAM), expected) < 1e-8
