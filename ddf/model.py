@@ -144,9 +144,10 @@ class Model(NamedTuple):
     inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node at its given velocity
     line_mass: np.ndarray  # (N,) the same; below 0 for nodes that do not leave the mirror plane, see `elements.tension`
     area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
+    inverse_area: np.ndarray  # (N,) one over the node's reference area, in a half model the whole's; 0: none [1/mm2]
     bar1: np.ndarray
     bar2: np.ndarray
-    cell: np.ndarray  # (N,) reference area of a cell [mm2]
+    cell: np.ndarray  # (N,) reference area of the cloth in a cell [mm2]
     triple1: np.ndarray  # (N,) area of the bending triple centred on a node, along family 1 [mm2]
     triple2: np.ndarray
     weight: np.ndarray  # (4 N,) weights of the bars around a node in its tangents, see `bending.tangent_weights`

@@ -123,6 +123,7 @@ def _half(scene: Scene, axis: int) -> Scene:
     model = whole._replace(
         sheets=sheets, blocks=blocks, pairs=pairs, **pools, **sizes, exposed=exposed,
         cover=np.concatenate([g.cut(whole.cover) for g in grids]),
+        inverse_area=np.concatenate([g.cut(whole.inverse_area) for g in grids]),
         weight=np.concatenate([g.cut_fours(whole.weight) for g in grids]),
         centre=np.concatenate([patch_centres(g.kept | rim_nodes(g.rim, g.shape)).ravel() for g in grids]),
         **rim_lists([g.rim for g in grids], sheets, blocks),

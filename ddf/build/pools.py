@@ -23,7 +23,7 @@ pushes its nodes with far more than the sliver's own stiffness: at their own mas
 
 def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float], rims: list[np.ndarray]) -> dict[str, Any]:
     """Node pools of the model: masses, areas, bars, cells, triples; rims: RIM records of each sheet."""
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
+    names = ("mass", "inverse_mass", "area", "inverse_area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     parts: dict[str, list[FloatArray]] = {name: [] for name in names}
     centres, weights = [], []
     for k, s in enumerate(sheets):
@@ -43,6 +43,7 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float], rims: list
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
         area = values["area"]
+        values["inverse_area"] = np.where(area > 0.0, 1.0 / np.where(area > 0.0, area, 1.0), 0.0)
         if s["kind"] != DIAPHRAGM:
             area = np.where(area > 0.0, np.maximum(area, LEAST_NODE * s["a1"] * s["a2"]), 0.0)
         mass = masses[k] * area

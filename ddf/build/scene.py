@@ -62,11 +62,11 @@ def _whole_scene(case: Case, even: bool, rings: int) -> Scene:
     friction, solver = case.friction, case.solver
     values = np.zeros((2, 2, 2, 4), np.float32) if tool_field is None else tool_field.values
     lines = np.concatenate([np.diff(stack.diaphragm.x_lines), np.diff(stack.diaphragm.y_lines)])
-    lines /= case.diaphragms.pre_stretch
+    unstretched = lines / case.diaphragms.pre_stretch
     walls = [line[end] for line in (stack.diaphragm.x_lines, stack.diaphragm.y_lines) for end in (0, -1)]
     model = Model(
         sheets=sheets, blocks=blocks, pairs=pairs, **pools, **rim_lists(rims, sheets, blocks),
-        **without_mirror(pools["inverse_mass"], len(blocks)), lines=lines, tool_lines=lines,
+        **without_mirror(pools["inverse_mass"], len(blocks)), lines=unstretched, tool_lines=lines,
         shear_tables=laws, tangents=tables, ogden=np.array(terms, dtype=float), exposed=exposed, tool=values,
         tool_origin=np.zeros(3) if tool_field is None else np.asarray(tool_field.origin, dtype=float),
         tool_spacing=1.0 if tool_field is None else float(tool_field.spacing),

@@ -25,9 +25,10 @@ anchor: in folds as tight as the contact distance places move where nothing slip
 master that stretched took what slip was held along, and gave the springs energy that no force had worked for.
 
 A node whose place lies outside the master's fabric is not in contact. Over half a cell on both sides of a ply's edge U
-fades to nothing (cover s, interpolated like the surface; -dU/ds s_a pushes the node off the edge): the corner of one
-ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10 to
-30 m/s (seen). One that is far away rests for as many steps as it needs at the given reach to come near.
+fades to nothing, and so does the energy of the friction spring (cover s, interpolated like the surface; -dU/ds s_a
+pushes the node off the edge; it is the gradient to the first order in d times the master's curvature): the corner of
+one ply that lies on the edge of another would else be pushed with all of K in one step and with none in the next, at 10
+to 30 m/s (seen). One that is far away rests for as many steps as it needs at the given reach to come near.
 
 A node that did not touch and is found deep (its projection failed for some steps, or a sheet has been pressed through
 another and comes back) did no work to get there. With all its depth at once the penalty threw it out: in a stack
@@ -372,7 +373,8 @@ def _press(w, count, sign, mu, stiffness, offset, damping, slow, dt):
         # off the master's edge, where its cover is less than whole
         cover = max(w[COVER + t], 1e-30)
         edge = cover < WHOLE_COVER and w[AREA + t] > 0.0
-        slope = -stored * 6.0 * (1.0 - cover) / (cover * (3.0 - 2.0 * cover)) if edge else 0.0
+        both = stored + 0.5 * kt * stretch2 * keep * keep
+        slope = -both * 6.0 * (1.0 - cover) / (cover * (3.0 - 2.0 * cover)) if edge else 0.0
         eu, ev = slope * w[UC + t], slope * w[VC + t]
         t1, t2 = t1 + eu * inverse_u, t2 + (ev - lean * eu) * inverse_v
         # contravariant components

@@ -21,6 +21,7 @@ from ddf.jit import FAST
 from ddf.materials.shear_law import TANGENT_SPAN
 from ddf.model import (
     DAMPING,
+    DIAPHRAGM,
     FIBRE_WORK,
     MASS_DAMPING,
     PLY,
@@ -65,9 +66,10 @@ def internal(model, state, work, row, b, scratch):
         for c in range(3):
             _weigh_row(f[c, i], model.gravity[c], mass[i])
     if sheet.squeeze > 0.0:
+        whole = 0.0 if sheet.kind == DIAPHRAGM else sheet.a1 * sheet.a2
         power = squeeze_forces(
-            x, vectors(state.v, sheet), f, scalars(model.cell, sheet), scalars(state.press, sheet), sheet.squeeze,
-            low, high, scratch,
+            x, vectors(state.v, sheet), f, scalars(model.cell, sheet), whole, scalars(state.press, sheet),
+            scalars(model.inverse_area, sheet), sheet.squeeze, low, high, scratch,
         )  # fmt: skip
         state.ledger[b, SQUEEZE_WORK] += model.dt * power
     if sheet.kind == PLY:

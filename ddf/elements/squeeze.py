@@ -10,13 +10,14 @@ than wrinkles need to be suppressed). A solid pressed by p on its faces holds -p
 with the layer's volume kept (rubber is incompressible; fabric in trellis shear keeps its volume of fibres). Half a
 sheet's thickness lies between its mid-surface and each contact, so each contact of pressure p adds -p t/2 to the sheet
 on either side. Nothing is added for the gas on the outer faces: it is applied to mid-surfaces, and what that neglects
-cancels against -p t/2. With P the sum of the contact forces on a cell (a quarter of each node's)
-the corners get
+cancels against -p t/2. With P the contact force on the cloth of a cell (each node's is shared out among the cells
+around it by their cloth) the corners get
 
     f = P t0 A0 / (2 A^2) dA/dx,   A = |t1 x t2|,   t1, t2 the cell's mean tangents,   with g_ab = t_a . t_b
     dA/dt1 = (g22 t1 - g12 t2)/A,   dA/dt2 = (g11 t2 - g12 t1)/A
 
-(forces and moments balance). The power of these forces is what pressure would do on layers that
+(forces and moments balance). A0 and A are those of the whole cell, also of one that an outline cuts: only P and the
+width on which N acts go with its share of cloth. The power of these forces is what pressure would do on layers that
 thin; mid-surfaces keep their distance in the model, so it is booked as work of its own.
 
 P is the mean of the contact forces over some fifty steps (SHARE). As they are, the pair of a force in the plane that
@@ -53,7 +54,7 @@ def _pressed(press, i, start, count):
 
 
 @njit(**FAST)
-def _factors(x, v, cell, press, half, i, start, count, w):
+def _factors(x, v, cell, whole, press, inverse_area, half, i, start, count, w):
     """Set Q11, Q22, Q12 of a tile of cells; returns the power of their forces."""
     power = 0.0
     for t in range(count):
@@ -62,9 +63,12 @@ def _factors(x, v, cell, press, half, i, start, count, w):
         ay, by = tangents(x, 1, i, j)
         az, bz = tangents(x, 2, i, j)
         g11, g22, g12 = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
-        area = max(np.sqrt(abs(g11 * g22 - g12 * g12)), LEAST_AREA * cell[i, j]) + 1e-30
-        force = 0.25 * (press[i, j] + press[i, j + ONE] + press[i + ONE, j] + press[i + ONE, j + ONE])
-        q = 0.5 * force * half * cell[i, j] / (area * area * area)
+        first = whole if whole > 0.0 else cell[i, j]
+        area = max(np.sqrt(abs(g11 * g22 - g12 * g12)), LEAST_AREA * first) + 1e-30
+        force = press[i, j] * inverse_area[i, j] + press[i, j + ONE] * inverse_area[i, j + ONE]
+        force += press[i + ONE, j] * inverse_area[i + ONE, j]
+        force += press[i + ONE, j + ONE] * inverse_area[i + ONE, j + ONE]
+        q = 0.125 * cell[i, j] * force * half * first / (area * area * area)
         w[Q11 + t], w[Q22 + t], w[Q12 + t] = q * g11, q * g22, q * g12
         rx, sx = tangents(v, 0, i, j)
         ry, sy = tangents(v, 1, i, j)
@@ -96,12 +100,13 @@ def _push(x, i, start, count, w, g):
 
 
 @njit(**FAST)
-def squeeze_forces(x, v, f, cell, press, thickness, low, high, work):
+def squeeze_forces(x, v, f, cell, whole, press, inverse_area, thickness, low, high, work):
     """Add the in-plane forces of contact pressure to rows low..high-1 of f.
 
-    x, v, f (3, n, m); cell (n, m) reference areas [mm2]; press (n, m) mean contact force on each node [N];
-    thickness at the reference area [mm]; work: at least SCRATCH numbers, flat. Returns the power of the forces of the
-    cells in rows low..high-1, on their nodes in all rows [N mm/s].
+    x, v, f (3, n, m); cell (n, m) reference areas of the cloth in cells, whole that of a cell which is full of it, 0
+    where all are [mm2]; press (n, m) mean contact force on each node [N]; inverse_area (n, m) one over a node's
+    reference area [1/mm2]; thickness at the reference area [mm]; work: at least SCRATCH numbers, flat. Returns the
+    power of the forces of the cells in rows low..high-1, on their nodes in all rows [N mm/s].
     """
     n, m = x.shape[1], x.shape[2]
     w, g = work[: 3 * TILE], work[3 * TILE : SCRATCH]
@@ -113,7 +118,7 @@ def squeeze_forces(x, v, f, cell, press, thickness, low, high, work):
             start, count = np.uint64(first), np.uint64(min(TILE, min(end, m - 1) - first))
             if not _pressed(press, row, start, count):
                 continue
-            done = _factors(x, v, cell, press, 0.5 * thickness, row, start, count, w)
+            done = _factors(x, v, cell, whole, press, inverse_area, 0.5 * thickness, row, start, count, w)
             if i >= low:
                 power += done
             _push(x, row, start, count, w, g)

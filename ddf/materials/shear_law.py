@@ -48,13 +48,16 @@ def table_law(angle_deg: Sequence[float], force_N_mm: Sequence[float], angle: Fl
 def monotone(angle: FloatArray, force: FloatArray, floor_N_mm: float) -> FloatArray:
     """Closest N_s to `force` over evenly spaced `angle` [rad] with d(N_s cos g)/dg >= `floor_N_mm` [N/mm].
 
-    The regression goes up to 75 deg; beyond, where cos g must turn any finite force down, the law is kept.
+    The regression goes up to 75 deg. Beyond, where cos g must turn any finite force down, the force goes on from there
+    by what the law rises, and stays where it falls.
     """
     inside = angle <= np.deg2rad(75.0)
     g, cosine = angle[inside], np.cos(angle[inside])
     tilt = floor_N_mm * g
     kept = force.copy()
     kept[inside] = (isotonic_regression(force[inside] * cosine - tilt).x + tilt) / cosine
+    last = np.count_nonzero(inside) - 1
+    kept[last:] = kept[last] + np.maximum.accumulate(force[last:] - force[last])
     return kept
 
 

@@ -119,7 +119,7 @@ def alone(scene: Scene, k: int) -> Scene:
     sheets = model.sheets[k : k + 1].copy()
     sheets["node"] = sheets["shell"] = 0
     sheets["bed"] = 0.0
-    names = ("mass", "inverse_mass", "area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
+    names = ("mass", "inverse_mass", "area", "inverse_area", "bar1", "bar2", "cell", "triple1", "triple2", "cover")
     pools = {name: getattr(model, name)[first : first + n].copy() for name in names}
     small = model._replace(
         sheets=sheets, blocks=blocks, pairs=model.pairs[:0], **pools,

@@ -261,3 +261,29 @@ def test_block_sticks_under_enough_friction():
     elastic = 1e-5 * 9810.0 * np.sin(np.deg2rad(20.0)) / (2.0 * TANGENTIAL)
     assert path[-1] == pytest.approx(elastic, rel=0.01)
     assert np.abs(v).max() < 0.1
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 0.52])
+@pytest.mark.parametrize("way", [6.0, -6.0])
+def test_a_node_that_slides_over_an_edge_takes_its_energy_along(friction, way):
+    """Off the edge and onto it, sliding at Coulomb's limit: work done on the contact is stored or lost."""
+    u, v = np.meshgrid(np.arange(12) * 4.0, np.arange(8) * 4.0, indexing="ij")
+    xm = np.array([u, v, 0.0 * u])
+    x = np.array([30.0 - 0.5 * way, 14.3, 0.95]).reshape(3, 1, 1)
+    scene = t.Layers(x, xm, 4.0, t.make_pair(friction=friction, stiffness=3.0), area=4.0)
+    scene.cover = np.clip(0.5 + (30.0 - xm[0]) / 4.0, -3.0, 3.0)  # from whole to none over a cell
+    scene.settle(x, xm, 20)
+    dt, steps = 1e-4, 10_000
+    before = scene.forces(x, xm, dt)[0]
+    first, largest = scene.out[:2].sum(), 0.0
+    speed, still = np.array([way / (steps * dt), 0.0, 0.0]).reshape(3, 1, 1), np.zeros_like(xm)
+    work = lost = 0.0
+    for _ in range(steps):
+        x = x + dt * speed
+        after = scene.forces(x, xm, dt, rates=(speed, still))[0]
+        work -= 0.5 * ((before + after) * speed).sum() * dt
+        lost += scene.out[2:].sum()
+        largest = max(largest, scene.out[:2].sum())
+        before = after
+    assert abs(scene.out[:2].sum() - first) > 0.9 * 0.5 * 3.0 * 4.0 * 0.05**2
+    assert work - (scene.out[:2].sum() - first) - lost == pytest.approx(0.0, abs=0.02 * largest)

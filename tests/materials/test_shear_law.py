@@ -46,6 +46,16 @@ def test_monotone_law_keeps_its_floor(floor):
     assert np.diff(force).min() >= 0.5 * floor * angle[1] * (1.0 - 1e-9) - 1e-15
 
 
+@pytest.mark.parametrize("forces", [[0.0, 0.02, 0.1, 0.33], [0.0, 0.2, 0.21, 0.21], [0.0, 0.3, 0.2, 0.1]])
+def test_a_monotone_table_goes_on_without_a_drop(forces):
+    """Tables that flatten are raised up to 75 degrees, where N_s cos g has to rise; they do not fall back there."""
+    angle, force = shear_samples("monotone", 0.5, FLOOR, None, ([0.0, 20.0, 40.0, 60.0], forces))
+    assert np.diff(force).min() >= 0.0
+    raw = shear_samples("published", 0.5, FLOOR, None, ([0.0, 20.0, 40.0, 60.0], forces))[1]
+    beyond = angle > np.deg2rad(75.5)
+    assert np.diff(force[beyond]) == pytest.approx(np.maximum(np.diff(raw[beyond]), 0.0), abs=1e-12)
+
+
 def test_monotone_law_is_close_to_the_published_one():
     angle, changed = _law("monotone")
     published = _law("published")[1]
