@@ -10,9 +10,9 @@ which is r at
 
     c0^2 = 8 r^2 (sqrt(1 + (s/(2 r))^2) - 1)
 
-(58 degrees of turn at a = 1.25 r, 85 at a = 2.5 r). c0 comes near s for a << r, and c is shorter than it not only where
-the sheet turns: rubber pressed flat in its plane meets the struts too, at 5 % with a = r/2, at 20 % with a = 1.25 r, and
-is up to twice as stiff from there on. When c < c0 the two outer nodes push each other apart:
+(58 degrees of turn at a = 1.25 r, 85 at a = 2.5 r). c0 comes near s for a << r, and c is shorter than it not only
+where the sheet turns: rubber pressed flat in its plane meets the struts too, at 5 % with a = r/2, at 20 % with
+a = 1.25 r, and is up to twice as stiff from there on. When c < c0 the two outer nodes push each other apart:
 
     U = 1/2 N w c0 (1 - c/c0)^2,   w the width of the line, N = 4 mu t of a diaphragm
 

@@ -161,7 +161,8 @@ def _pools(sheets: Sequence[Sheet], records: np.ndarray) -> dict[str, Any]:
         add(
             mass=mass.ravel(), inverse_mass=np.where(s.held, 0.0, 1.0 / (s.areal_mass * area)).ravel(),
             area=np.where(s.held, 0.0, area).ravel(), inverse_area=1.0 / area.ravel(),
-            bar1=bar1.ravel(), bar2=bar2.ravel(), cell=np.pad(s.cells, ((0, 1), (0, 1))).ravel(), triple1=triple1.ravel(), triple2=triple2.ravel(),
+            bar1=bar1.ravel(), bar2=bar2.ravel(), cell=np.pad(s.cells, ((0, 1), (0, 1))).ravel(),
+            triple1=triple1.ravel(), triple2=triple2.ravel(),
             weight=tangent_weights(bar1, bar2).ravel(),
             centre=patch_centres(np.ones((n, m), bool)).ravel(), cover=np.ones(n * m),
         )  # fmt: skip
