@@ -11,7 +11,7 @@ from ddf.build import build_scene
 from ddf.case import case_from_dict
 from ddf.errors import DdfError
 from ddf.metrics import PlySurface, WrinkleResult, find_wrinkles, ply_metrics
-from ddf.monitors.audit import Check, audit
+from ddf.monitors.audit import Check, audit, history_checks
 from ddf.monitors.energy import Energies, energies
 from ddf.net_run import run_net
 from ddf.output.checkpoint import load_checkpoint
@@ -45,8 +45,9 @@ def finish_folder(
     scene = scene.whole()
     surfaces, wrinkles, tables = measure(scene)
     across = [found.smallest_elements_across for found in wrinkles if found.count]
-    kinetic = open_run(out.path).history()["kinetic_mJ"]
-    checks = audit(scene, energy, time, min(across) if across else None, float(kinetic.max(initial=0.0)))
+    history = open_run(out.path).history()
+    kinetic = float(history["kinetic_mJ"].max(initial=0.0))
+    checks = audit(scene, energy, time, min(across) if across else None, kinetic) + history_checks(history)
     write_profiles(out, surfaces)
     write_wrinkles(out, wrinkles)
     write_metrics(out, tables, audit=checks)
@@ -98,7 +99,8 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
     summary = f"{stack} between two {case.diaphragms.thickness_mm:g} mm diaphragms; {tool}."
     plies = run.metrics["plies"]
     gaps = [ply["bridging_largest_mm"] for ply in plies if ply.get("bridging_largest_mm") is not None]
-    added = sum(sheet["added_mass_g"] for sheet in info["mesh"]["sheets"].values())
+    meshed = info["mesh"]["sheets"].values()
+    added, true = (sum(sheet[name] for sheet in meshed) for name in ("added_mass_g", "mass_g"))
     key_numbers = {
         "wrinkles": sum(ply["wrinkle_count"] for ply in plies),
         "highest wrinkle": f"{max(ply['wrinkle_largest_amplitude_mm'] for ply in plies):.1f} mm",
@@ -108,7 +110,7 @@ def report_of(scene: Scene, out: RunFolder, notes: list[str]) -> Path:
         f"steps of {info['step_s']:.3g} s": info["step"],
         "wall time of the steps": f"{info['wall_s'].get('steps', 0.0):.0f} s on "
         + ("1 thread" if info["threads"] == 1 else f"{info['threads']} threads"),
-        "added mass": f"{added:.0f} g",
+        "added mass (true mass)": f"{added:.0f} g ({true:.0f} g)",
     }  # fmt: skip
     if "half_model" in info:
         key_numbers["half model"] = f"{info['half_model']} was computed"

@@ -77,8 +77,8 @@ def _summary(result: Any) -> None:
     for values in result.plies:
         click.echo(_net_line(values) if "locked_area_percent" in values else _formed_line(values))
     for check in result.checks:
-        mark = "ok  " if check["ok"] else "WARN"
-        click.echo(f"{mark} {check['name']}: {check['value']:.3g} {check['unit']} (limit {check['limit']:g})")
+        mark, remedy = ("ok  ", "") if check["ok"] else ("WARN", f": {check['remedy']}")
+        click.echo(f"{mark} {check['name']}: {check['value']:.3g} {check['unit']} (limit {check['limit']:g}){remedy}")
     for note in result.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {result.folder / 'report.html'}")

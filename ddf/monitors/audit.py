@@ -2,18 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TypedDict
 
 import numpy as np
 
 from ddf.model import sheet_scalars, sheet_vectors
-from ddf.monitors.crossings import self_crossings
+from ddf.monitors.crossings import layer_crossings, self_crossings
 from ddf.monitors.energy import Energies
 from ddf.monitors.layers import DEEP, depth_in_layers, depths
 from ddf.monitors.stability import fibre_stretch
 from ddf.monitors.zigzag import zigzag_share
 from ddf.scene import Scene
+
+REMEDIES = {
+    "kinetic over internal energy": "a longer last stage, or more mass damping in it (process.stages.damping_1_s)",
+    "energy balance error": "a smaller solver.step_safety, longer stages; do not use the results as they are",
+    "energy given back by what only takes": "a smaller solver.step_safety; do not use the results as they are",
+    "taken by waves of the fibres": "longer stages: fibres are jerked",
+    "taken by mass damping": "longer stages with less damping; compare the part with one of twice the durations",
+    "deepest penetration of the tool": "smaller diaphragms.element_mm, a larger solver.tool_contact_stiffness_N_mm3",
+    "largest fibre strain": "see where (strain_1, strain_2 in the frames): a few bars over an apex are harmless",
+    "added mass": "only a statement where kinetic energies are low; less solver.mass_scaling costs steps",
+    "edges of a sheet through itself": "solver.self_contact = true, smaller plies.element_mm; do not trust that fold",
+    "edges of layers through each other": "smaller elements: those at the tool's sharpest place are as wide as it",
+    "nodes deep in the next layer": "a larger solver.contact_stiffness_N_mm3, smaller elements",
+    "deepest node in the next layer": "a larger solver.contact_stiffness_N_mm3, smaller elements; harmless below 100 %",
+    "largest kinetic over final internal energy": "longer stages, or less mass: see whether the part changes",
+    "deepest place of a ply in the tool": "smaller elements, a larger fillet; the part is wrong there",
+    "deepest self-contact": "smaller plies.element_mm",
+    "gap over the tool's apex": "smaller elements; more lift or pressure if it is more than an element",
+    "elements across the narrowest wrinkle": "smaller plies.element_mm: sizes of the narrowest wrinkles are coarse",
+    "nodes in a zigzag of the grid": "smaller plies.element_mm, longer stages",
+    "wall time of the steps": "a lower rung (target.seconds), more threads",
+}
+"""What to do about a check that is missed."""
+
+LEAST_WORK = 100.0
+"""Shares of the work are taken of at least this much [mJ]."""
 
 SAMPLES = 5
 """Points along each side of a cell where penetration is measured."""
@@ -27,7 +53,8 @@ class Check(TypedDict):
     limit: float
     unit: str
     ok: bool
-    meaning: str
+    meaning: str  # what is so where it is ok
+    remedy: str  # what to do where it is not
 
 
 def deepest_penetration(scene: Scene, time: float) -> float:
@@ -115,10 +142,14 @@ def audit(
         _check("energy balance error", abs(100 * energy.error_share), 1.0, "% of work", "no energy came from nowhere"),
         _check("deepest penetration of the tool", deepest_penetration(scene, time), 0.2, "mm", "contact was stiff"),
         _check("largest fibre strain", 100 * max(-low, high), 0.3, "%", "fibres are as good as inextensible"),
-        _check("added mass", 100 * added, 50.0, "% of all", "mass scaling of the plies is small"),
+        _check("added mass", 100 * added, 50.0, "% of the true mass", "mass scaling is small"),
     ]
     checks.append(crossing_check(sum(self_crossings(scene).values())))
     if scene.model.pairs.size:
+        edges = sum(layer_crossings(scene).values())
+        checks.append(
+            _check("edges of layers through each other", edges, 0.0, "", "cells of layers do not cut each other")
+        )
         deep, deepest = depth_in_layers(scene)
         meaning = "contact of layers was stiff"
         checks.append(_check("nodes deep in the next layer", 100.0 * deep, 1.0, "% of a sheet", meaning))
@@ -140,6 +171,38 @@ def audit(
     if elements_across is not None:
         checks.append(across_check(elements_across))
     checks.append(zigzag_check(scene))
+    return checks
+
+
+def history_checks(history: Mapping[str, Sequence[float] | np.ndarray]) -> list[Check]:
+    """Checks of what history.csv holds: what was dissipated must not come back, nor be what decides on the part.
+
+    The balance alone cannot see a fault of the implicit steps (fibres, tool): what they take is known only as what is
+    missing (`monitors.energy`). That it grows, always, and is little, is what shows that they take it.
+    """
+    lost = {name: np.asarray(history[name], dtype=float) for name in history if name.startswith("dissipated_")}
+    if not lost or not all(column.size for column in lost.values()):
+        return []
+    work = sum(float(history[name][-1]) for name in history if name.startswith("work_"))
+    scale = 100.0 / max(abs(work), LEAST_WORK)
+    back = sum(float(-np.minimum(np.diff(column), 0.0).sum()) for column in lost.values())
+    checks = [
+        _check(
+            "energy given back by what only takes",
+            scale * back,
+            0.1,
+            "% of work",
+            "friction, damping and waves only take",
+        )
+    ]
+    for name, column, limit in (
+        ("taken by waves of the fibres", "dissipated_fibre_waves_mJ", 3.0),
+        ("taken by mass damping", "dissipated_mass_damping_mJ", 50.0),
+    ):
+        if column in lost:
+            checks.append(
+                _check(name, scale * float(lost[column][-1]), limit, "% of work", "it does not decide on the part")
+            )
     return checks
 
 
@@ -167,4 +230,7 @@ def zigzag_check(scene: Scene) -> Check:
 
 
 def _check(name: str, value: float, limit: float, unit: str, meaning: str) -> Check:
-    return Check(name=name, value=float(value), limit=limit, unit=unit, ok=bool(value <= limit), meaning=meaning)
+    return Check(
+        name=name, value=float(value), limit=limit, unit=unit, ok=bool(value <= limit), meaning=meaning,
+        remedy=REMEDIES[name],
+    )  # fmt: skip

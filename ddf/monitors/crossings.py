@@ -1,8 +1,11 @@
-"""Where a sheet passes through itself: edges of one cell through the triangles of another, exactly.
+"""Where a sheet passes through itself or the next: edges of one cell through the triangles of another, exactly.
 
 A wrinkle that closes on itself without self-contact does so unseen by all else. Only cells that lie near each other in
 space are looked at, and of those that are neighbours on the grid only the ones beside a sharp kink, so a sheet without
 folds costs one search of neighbours.
+
+Contact keeps nodes off the smooth surface of the next sheet (`contact.patch`), which lies inside a bend of its cells:
+over an apex hardly wider than the cells, the cells of two sheets can cut each other though no node is deep.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
-from ddf.model import sheet_scalars, sheet_vectors
+from ddf.model import DIAPHRAGM, sheet_scalars, sheet_vectors
 from ddf.scene import Scene
 
 Array = NDArray[np.float64]
@@ -42,13 +45,67 @@ def self_crossings(scene: Scene) -> dict[str, int]:
     return found
 
 
+def layer_crossings(scene: Scene) -> dict[tuple[str, str], int]:
+    """Edges of sheets that pass through a sheet beside them, by both names; pairs without any are left out.
+
+    Cells that an outline cuts are left out: not all of them is cloth.
+    """
+    shapes, pairs = [_shape(scene, k) for k in range(len(scene.sheets))], {(0, len(scene.sheets) - 1)}
+    pairs |= {(k, k + 1) for k in range(len(scene.sheets) - 1)}
+    found = {}
+    for a, b in sorted(pairs):
+        count = _crossings_between(shapes[a], shapes[b])
+        if count:
+            found[scene.sheets[a].name, scene.sheets[b].name] = count
+    return found
+
+
+def _shape(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
+    """Corners (c, 4, 3) of the cells of a sheet that are full of it, and these nodes' numbers (c, 4)."""
+    x, cell = sheet_vectors(scene.model, scene.state.x, k), sheet_scalars(scene.model, scene.model.cell, k)[:-1, :-1]
+    sheet = scene.model.sheets[k]
+    full = 0.0 if sheet["kind"] == DIAPHRAGM else (1.0 - 1e-9) * float(sheet["a1"] * sheet["a2"])
+    cells = np.argwhere((cell > 0.0) & (cell >= full))
+    return _corners(x, cells), (cells[:, None] + CORNERS) @ [x.shape[2], 1]
+
+
+def _corners(x: Array, cells: NDArray[np.intp]) -> Array:
+    """Corners (c, 4, 3) of cells (c, 2) of a sheet x (3, n, m)."""
+    points = x[:, (cells[:, None] + CORNERS)[..., 0], (cells[:, None] + CORNERS)[..., 1]]
+    return np.moveaxis(points, 0, -1)
+
+
+def _crossings_between(one: tuple[Array, NDArray[np.intp]], other: tuple[Array, NDArray[np.intp]]) -> int:
+    """Edges of two sheets that pass through the other; corners (c, 4, 3) of cells, and numbers (c, 4), of both."""
+    points, nodes = (np.concatenate([a, b]) for a, b in zip(one, other, strict=True))
+    if not np.isfinite(points).all():
+        return 0
+    middle = points.mean(axis=1)
+    reach = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
+    pairs = np.sort(_near(middle, reach), axis=1)
+    pairs = pairs[(pairs[:, 0] < len(one[0])) & (pairs[:, 1] >= len(one[0]))]
+    # most lie on two sides of the first one's mean plane
+    first, second = points[pairs[:, 0]], points[pairs[:, 1]]
+    normal = np.cross(first[:, 2] - first[:, 0], first[:, 3] - first[:, 1])[:, None]
+    own, others = ((part * normal).sum(axis=2) for part in (first, second))
+    meets = (others.min(axis=1) <= own.max(axis=1)) & (others.max(axis=1) >= own.min(axis=1))
+    first, second, pairs = first[meets], second[meets], pairs[meets]
+    count = 0
+    for p, q, cells in ((first, second, pairs[:, 0]), (second, first, pairs[:, 1])):
+        edges = []
+        for a, b in EDGES:
+            crosses = [_through(p[:, a], p[:, b], *(q[:, c] for c in triangle)) for triangle in TRIANGLES]
+            edges.append(nodes[cells[np.any(crosses, axis=0)]][:, (a, b)])
+        count += len(np.unique(np.sort(np.concatenate(edges), axis=1), axis=0))
+    return count
+
+
 def crossings_of(x: Array, exists: NDArray[np.bool_]) -> int:
     """Pairs of an edge and a triangle of a sheet x (3, n, m), cells (n-1, m-1), that cross."""
     if not np.isfinite(x).all():
         return 0
     cells = np.argwhere(exists)
-    points = x[:, (cells[:, None] + CORNERS)[..., 0], (cells[:, None] + CORNERS)[..., 1]]  # (3, c, 4)
-    points = np.moveaxis(points, 0, -1)  # (c, 4, 3)
+    points = _corners(x, cells)
     middle = points.mean(axis=1)
     reach = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
     pairs = _near(middle, reach)

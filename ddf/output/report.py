@@ -61,7 +61,7 @@ class Report:
     summary: str = ""  # what was simulated, in a sentence or two
     key_numbers: Mapping[str, Any] = field(default_factory=dict)  # label with unit: value
     plies: Sequence[Mapping[str, Any]] = ()  # tables of ddf.metrics.ply_metrics
-    audit: Sequence[Mapping[str, Any]] = ()  # name, value, limit, ok, meaning
+    audit: Sequence[Mapping[str, Any]] = ()  # name, value, limit, unit, ok, meaning, remedy
     energies: Mapping[str, float] = field(default_factory=dict)  # label: value at the end [mJ]
     settings: str = ""  # the resolved case, TOML
     versions: Mapping[str, Any] = field(default_factory=dict)

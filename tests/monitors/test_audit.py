@@ -1,9 +1,14 @@
 """The audit against states made by hand."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from ddf.model import sheet_vectors
-from ddf.monitors.audit import ply_inside_tool, self_contact
+from ddf.monitors.audit import history_checks, ply_inside_tool, self_contact
+from ddf.monitors.energy import energies
+from ddf.simulate import Simulation
 
 
 def test_a_ply_below_the_top_of_the_tool_is_found(make_scene):
@@ -27,3 +32,29 @@ def test_a_node_that_touches_its_own_sheet_is_counted(make_scene):
     x[:, 2, 2] = x[:, 9, 9] + [0.0, 0.0, 0.8 * float(pair["sign"]) * float(pair["offset"])]
     place[:3, 2, 2] = 9.0, 9.0, -0.01
     assert self_contact(scene) == (1, pytest.approx(0.2))
+
+
+@pytest.mark.parametrize(("spread", "seen"), [(0.0, False), (0.5, True)])
+def test_a_fibre_solver_that_makes_energy_is_found_out(make_scene, spread, seen):
+    """Wrong masses in the fibres' implicit step: the balance cannot see it, what fibres take and give back does."""
+    scene = make_scene(
+        "hemisphere", "plies.0.size_mm=[100,100]", "plies.0.element_mm=6", "frame.length_mm=200", "frame.width_mm=200",
+        "diaphragms.element_mm=7", "tool.radius_mm=30", "process.stages.1.tool_lift_mm=30", "solver.symmetry=off",
+    )  # fmt: skip
+    wrong = np.exp(spread * np.random.default_rng(0).normal(size=scene.model.line_mass.size))
+    scene = replace(scene, model=scene.model._replace(line_mass=scene.model.line_mass * wrong))
+    sim, rows = Simulation(scene), []
+    for _ in range(0, scene.steps, 50):
+        sim.advance(50)
+        now = energies(scene.model, scene.state)
+        parts = {f"dissipated_{name}_mJ": value for name, value in now.dissipated.items()}
+        rows.append(parts | {f"work_{name}_mJ": value for name, value in now.work.items()})
+    sim.close()
+    assert abs(now.error_share) < 0.005
+    checks = {check["name"]: check for check in history_checks({key: [row[key] for row in rows] for key in rows[0]})}
+    assert checks["taken by waves of the fibres"]["ok"] is not seen
+    assert checks["energy given back by what only takes"]["ok"] is not seen
+
+
+def test_an_empty_history_has_no_checks():
+    assert history_checks({"time_s": np.zeros(0)}) == []

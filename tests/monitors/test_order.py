@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from crossings import crossings
+from crossings import _hits, _triangles, crossings
 
-from ddf.model import sheet_vectors
-from ddf.monitors.crossings import crossings_of, self_crossings
+from ddf.model import sheet_scalars, sheet_vectors
+from ddf.monitors.crossings import crossings_of, layer_crossings, self_crossings
 from ddf.monitors.layers import depth_in_layers
 from ddf.monitors.zigzag import zigzag_share
 
@@ -21,6 +21,26 @@ def test_a_flat_stack_is_in_order(scene):
     assert depth_in_layers(scene)[0] == 0.0
     assert zigzag_share(scene) == 0.0
     assert self_crossings(scene) == {}
+    assert layer_crossings(scene) == {}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_layers_that_cut_each_other_are_those_of_an_independent_test(scene, seed):
+    """A ply crumpled until it reaches the lower diaphragm: every edge of one through the other, once."""
+    rng = np.random.default_rng(seed)
+    sheets = [sheet_vectors(scene.model, scene.state.x, k) for k in (0, 1)]
+    sheets[1][2] -= np.where(rng.uniform(size=sheets[1][2].shape) < 0.1, 3.0, 0.0)
+    points = [x.reshape(3, -1).T for x in sheets]
+    faces = []
+    for k, x in enumerate(sheets):
+        number = np.arange(x[0].size).reshape(x[0].shape)
+        quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
+        faces.append(_triangles(quads[sheet_scalars(scene.model, scene.model.cell, k)[:-1, :-1] > 0.0]))
+    known = sum(
+        len(np.unique(_hits(points[a], faces[a], points[b], faces[b], False).edge, axis=0)) for a, b in ((0, 1), (1, 0))
+    )
+    assert known > 10
+    assert layer_crossings(scene) == {("bottom-diaphragm", scene.sheets[1].name): known}
 
 
 @pytest.mark.parametrize(("lowered", "share"), [(0.4, 0.0), (0.9, 1.0), (2.5, 1.0)])
