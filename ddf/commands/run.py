@@ -88,8 +88,15 @@ def _formed_line(values: dict[str, Any]) -> str:
     return (
         f"{values['ply']}: {values['wrinkle_count']} wrinkles, {values['wrinkle_total_length_mm']:.0f} mm in all, "
         f"largest {values['wrinkle_largest_amplitude_mm']:.1f} mm high; shear up to "
-        f"{values['shear_max_deg']:.1f} deg; largest gap to the tool {values['bridging_largest_mm'] or 0.0:.1f} mm"
+        f"{values['shear_max_deg']:.1f} deg{_gap(values)}"
     )
+
+
+def _gap(values: dict[str, Any]) -> str:
+    if values["gap_largest_mm"] is None:  # there is no tool
+        return ""
+    outside = values["bridging_largest_mm"]
+    return f"; largest gap to the tool {values['gap_largest_mm']:.1f} mm, outside wrinkles {outside:.1f} mm"
 
 
 def _net_line(values: dict[str, Any]) -> str:

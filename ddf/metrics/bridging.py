@@ -16,6 +16,8 @@ class Bridging:
 
     gap: Array  # [mm] (n, m) distance - offset; NaN where not in the ply
     mask: Mask  # (n, m) bridging nodes: gap above the threshold, outside wrinkles
+    largest_anywhere_mm: float  # [mm] largest gap, wrinkles included
+    open_area_percent: float  # [%] share of the ply's area with a gap above the threshold, wrinkles included
     largest_mm: float  # [mm] largest gap outside wrinkles
     mean_mm: float  # [mm] area mean of max(gap, 0) over the whole ply
     mean_outside_wrinkles_mm: float  # [mm] the same over the area outside wrinkles
@@ -33,10 +35,11 @@ def find_bridging(surface: PlySurface, wrinkle_cells: Mask | None = None, thresh
     outside = (area > 0) & np.isfinite(gap)
     if not outside.any():
         nan = float("nan")
-        return Bridging(gap, np.zeros(surface.shape, bool), nan, nan, nan, nan)
+        return Bridging(gap, np.zeros(surface.shape, bool), nan, nan, nan, nan, nan, nan)
     open_gap = np.where(outside, np.maximum(gap, 0.0), 0.0)
     mean = float((open_gap * area)[outside].sum() / area[outside].sum())
     whole = float(area[outside].sum())
+    largest, wide = float(open_gap.max()), float(area[outside & (gap > threshold_mm)].sum())
     if wrinkle_cells is not None:
         outside &= ~_nodes_near(wrinkle_cells)
     mask = outside & (gap > threshold_mm)
@@ -44,6 +47,8 @@ def find_bridging(surface: PlySurface, wrinkle_cells: Mask | None = None, thresh
     return Bridging(
         gap=gap,
         mask=mask,
+        largest_anywhere_mm=largest,
+        open_area_percent=100 * wide / whole,
         largest_mm=float(open_gap[outside].max(initial=0.0)),
         mean_mm=mean,
         mean_outside_wrinkles_mm=float((open_gap * area)[outside].sum() / rest) if rest > 0 else 0.0,

@@ -27,6 +27,7 @@ def select_crests(
     lines: list[Array],
     sections: Sections,
     x: Array,
+    trust: list[float],
     *,
     step_mm: float,
     gap_mm: float,
@@ -36,13 +37,13 @@ def select_crests(
     """Crests of at least the least length, and the heights of their sections on the nodes (n, m) [mm].
 
     A section counts where its amplitude exceeds the threshold. Lines are taken in the order of their
-    strength, the sum of their amplitudes. A stretch within the half-height zone of a wrinkle already taken
-    belongs to that wrinkle. Faults no longer than `gap_mm` do not interrupt a crest.
+    strength, the sum of their amplitudes times the trust in each. A stretch within the half-height zone of a wrinkle
+    already taken belongs to that wrinkle. Faults no longer than `gap_mm` do not interrupt a crest.
     """
     starts = np.concatenate([[0], np.cumsum([len(line) for line in lines])])
     good = sections.values[:, AMPLITUDE] > threshold_mm
     weight = np.where(good, sections.values[:, AMPLITUDE], 0.0)
-    strength = np.add.reduceat(weight, starts[:-1])
+    strength = np.add.reduceat(weight, starts[:-1]) * trust
     height = np.zeros(x.shape[1:])
     owned = np.zeros(x.shape[1:], dtype=bool)
     crests: list[Crest] = []

@@ -17,6 +17,9 @@ from ddf.metrics.surface import Array, PlySurface, inside_outline
 
 AMPLITUDE, WIDTH, ARC, AREA, SHIFT = range(5)
 METRIC_SMOOTHING_MM = 2.0
+TWIN_MM, DIP = 15.0, 0.4
+"""A dip is between two crests of one fold, and no foot, where it is less deep than DIP of what the sheet falls within
+TWIN_MM beyond."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +36,14 @@ class Sections:
 
 
 def cut_sections(
-    surface: PlySurface, field: HeightField, lines: list[Array], reach_mm: float, threshold_mm: float
-) -> Sections:
-    """Sections over all points of the ridge lines (k, 2), half-length `reach_mm`."""
+    surface: PlySurface, field: HeightField, lines: list[Array], windows_mm: list[float], reach_mm: float,
+    threshold_mm: float,
+) -> Sections:  # fmt: skip
+    """Sections over all points of the ridge lines (k, 2), half-length `reach_mm`.
+
+    windows_mm: how far from each line its summits may be. Where that is more than two elements, the line is in the
+    middle of a fold that may have several, and stands for its crest as it is; it has to be above half their height.
+    """
     uv = np.vstack(lines)
     spacing = np.array(surface.spacing)
     along = np.vstack([_gradient(line) for line in lines])
@@ -53,8 +61,12 @@ def cut_sections(
     i, j = np.rint(uv).astype(int).T
     normal = field.normal[:, i, j].T
     normal = _unit_rows(normal - (normal * tangent).sum(axis=1)[:, None] * tangent)
-    window = max(round(1.5 * min(surface.spacing) / (places[1] - places[0])), 2)
+    sizes = [len(line) for line in lines]
+    window = np.repeat([max(round(width / (places[1] - places[0])), 2) for width in windows_mm], sizes)
     height, values = _measure(places, heights, points, valid, tangent, normal, window, threshold_mm)
+    middles = np.repeat([width > 2.0 * min(surface.spacing) for width in windows_mm], sizes)
+    values[middles, SHIFT] = 0.0
+    values[middles & (height[:, count] < 0.5 * values[:, AMPLITUDE])] = 0.0  # between two folds
     return Sections(places, samples, height, values, tangent, grid_direction, tilt)
 
 
@@ -66,7 +78,7 @@ def _measure(
     valid: np.ndarray,
     tangent: Array,
     normal: Array,
-    window: int,
+    window: np.ndarray,
     threshold: float,
 ) -> tuple[Array, Array]:
     """Measure every section: (k, p) heights over its base and (k, 5) values; 0 where there is no fold.
@@ -80,8 +92,8 @@ def _measure(
         own = np.empty(len(places))
         for p in range(len(places)):
             own[p] = _dot(points[k, p], normal[k])
-        crest, over = _relief(places, heights[k], valid[k], window, threshold)
-        crest_own, over_own = _relief(places, own, valid[k], window, threshold)
+        crest, over = _relief(places, heights[k], valid[k], window[k], threshold)
+        crest_own, over_own = _relief(places, own, valid[k], window[k], threshold)
         if crest < 0 or crest_own < 0:
             continue
         if over_own[crest_own] < over[crest]:
@@ -107,7 +119,8 @@ def _relief(places: Array, h: Array, valid: np.ndarray, window: int, threshold: 
     crest = _summit(h, valid, window)
     if crest < 0:
         return -1, above
-    first, last = _flank(h, valid, crest, -1, threshold), _flank(h, valid, crest, 1, threshold)
+    twin = round(TWIN_MM / (places[1] - places[0]))
+    first, last = _flank(h, valid, crest, -1, threshold, twin), _flank(h, valid, crest, 1, threshold, twin)
     left, right = _feet(places, h, first, crest, last)
     if left == crest or right == crest:
         return -1, above
@@ -154,15 +167,25 @@ def _summit(h: Array, valid: np.ndarray, window: int) -> int:
 
 
 @njit(cache=True)
-def _flank(h: Array, valid: np.ndarray, crest: int, way: int, threshold: float) -> int:
-    """Last sample of the flank: its lowest before the sheet rises again by more than the tolerance."""
+def _flank(h: Array, valid: np.ndarray, crest: int, way: int, threshold: float, twin: int) -> int:
+    """Last sample of the flank: its lowest before the sheet rises again by more than the tolerance.
+
+    Dips between two crests of a fold (the next `twin` samples fall much lower) are passed over.
+    """
     lowest = crest
+    near = crest + way
+    fall = 0.0
+    while 0 <= near < len(h) and valid[near] and abs(near - crest) <= twin:
+        fall = max(fall, h[crest] - h[near])
+        near += way
     k = crest + way
     while 0 <= k < len(h) and valid[k]:
         if h[k] < h[lowest]:
             lowest = k
         elif h[k] - h[lowest] > max(0.5 * threshold, 0.1 * (h[crest] - h[lowest])):
-            break
+            twins = abs(k - crest) <= twin and h[crest] - h[lowest] <= DIP * fall
+            if not twins:
+                break
         k += way
     return lowest
 

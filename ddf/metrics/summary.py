@@ -33,6 +33,8 @@ def ply_metrics(
         **shear_statistics(surface),
         "fibre_strain_min": low,
         "fibre_strain_max": high,
+        "gap_largest_mm": _known(spans.largest_anywhere_mm),
+        "gap_area_percent": _known(spans.open_area_percent),
         "bridging_largest_mm": _known(spans.largest_mm),
         "bridging_mean_mm": _known(spans.mean_mm),
         "bridging_mean_outside_wrinkles_mm": _known(spans.mean_outside_wrinkles_mm),

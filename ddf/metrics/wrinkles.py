@@ -15,6 +15,10 @@ from ddf.metrics.ridges import trace_ridges
 from ddf.metrics.surface import Array, Mask, PlySurface, cell_area
 
 SMOOTHING_MM = 2.5  # Gaussian of the height in which ridges are looked for
+NARROW_MM = 1.5  # and again, for narrow folds side by side, where elements are no larger than this
+WIDE_MM = 5.0  # and for folds that are flat on top or have two crests: their middles
+WIDE_WINDOW_MM = 6.0  # how far from the middle of such a fold its summits may be
+TRUST = 0.8  # strength of lines found in these, which are taken where the first has no better one
 REACH_MM = 30.0  # half-length of the sections: flanks of wider folds are cut off there
 GAP_MM = 6.0  # longest interruption of a crest
 CURVATURE_PER_THRESHOLD = 0.006  # [1/mm2] least curvature of a ridge per mm of threshold
@@ -92,15 +96,23 @@ def find_wrinkles(
     field = height_field(surface)
     spacing = surface.spacing
     domain = surface.cell_fraction > 0
-    lines = trace_ridges(field, domain, spacing, SMOOTHING_MM, CURVATURE_PER_THRESHOLD * threshold_mm)
-    lines = join_lines(lines, spacing, GAP_MM)
+    curvature, element = CURVATURE_PER_THRESHOLD * threshold_mm, min(spacing)
+    usual, narrow, wide = (
+        join_lines(trace_ridges(field, domain, spacing, smoothing, curvature), spacing, GAP_MM)
+        if smoothing >= element
+        else []
+        for smoothing in (max(SMOOTHING_MM, element), NARROW_MM, max(WIDE_MM, element))
+    )
+    lines = usual + narrow + wide
     if not lines:
         return WrinkleResult([], np.zeros(domain.shape, bool), np.zeros(surface.shape), 0.0)
-    sections = cut_sections(surface, field, lines, REACH_MM, threshold_mm)
+    windows = [1.5 * element] * len(usual + narrow) + [max(WIDE_WINDOW_MM, 2.5 * element)] * len(wide)
+    sections = cut_sections(surface, field, lines, windows, REACH_MM, threshold_mm)
     crests, height = select_crests(
         lines,
         sections,
         field.x,
+        [1.0] * len(usual) + [TRUST] * len(narrow + wide),
         step_mm=0.5 * min(spacing),
         gap_mm=GAP_MM,
         threshold_mm=threshold_mm,

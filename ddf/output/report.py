@@ -47,9 +47,11 @@ PLY_ROWS = (
     ("outline_initial_area_mm2", "outline, area before [mm²]"),
     ("outline_area_mm2", "outline, area formed, in plan [mm²]"),
     ("outline_length_mm", "outline, length formed [mm]"),
+    ("gap_largest_mm", "largest gap to the tool, wrinkles included [mm]"),
+    ("gap_area_percent", "area with a gap of over 0.5 mm, wrinkles included [%]"),
     ("bridging_largest_mm", "largest bridging gap outside wrinkles [mm]"),
     ("bridging_mean_mm", "mean gap to the tool [mm]"),
-    ("bridged_area_percent", "bridged area [%]"),
+    ("bridged_area_percent", "bridged area, outside wrinkles [%]"),
 )
 
 

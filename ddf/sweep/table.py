@@ -14,7 +14,8 @@ from ddf.sweep.plan import Point, scalar_keys
 
 METRICS = (
     "wrinkle_count", "wrinkle_total_length_mm", "wrinkle_largest_amplitude_mm", "wrinkled_area_percent",
-    "shear_mean_deg", "shear_p95_deg", "shear_max_deg", "bridging_largest_mm", "bridged_area_percent",
+    "shear_mean_deg", "shear_p95_deg", "shear_max_deg", "gap_largest_mm",
+    "gap_area_percent", "bridging_largest_mm", "bridged_area_percent",
     "locked_area_percent", "outline_area_mm2",
 )  # fmt: skip
 DRAW_IN = ("draw_in_mid_side_mean_mm", "draw_in_corner_mean_mm")

@@ -243,3 +243,35 @@ def test_thresholds_are_kept():
     assert find_wrinkles(surface).count == 1
     assert find_wrinkles(surface, threshold_mm=1.1).count == 0
     assert find_wrinkles(surface, min_length_mm=45).count == 0
+
+
+@pytest.mark.parametrize(("spacing", "sigma"), [(1.0, 2.0), (1.0, 3.0), (1.0, 4.0), (2.0, 3.0), (2.0, 4.0)])
+@pytest.mark.parametrize("angle", [0.0, 30.0])
+def test_two_crests_side_by_side_are_one_fold_or_two_and_never_none(spacing, angle, sigma):
+    """Equal ridges that come apart: one fold as high as it is, then two, each over the dip between them."""
+    u, v = grid(120, spacing)
+    counts = []
+    for gap in sigma * np.array([1.5, 2.0, 2.25, 2.5, 2.75, 3.5, 4.0, 4.5]):
+        shift = 0.5 * gap * np.array([-np.sin(np.radians(angle)), np.cos(np.radians(angle))])
+        pair = [ridge(u, v, amplitude=4.0, sigma=sigma, angle_deg=angle, centre=tuple(s * shift)) for s in (-1, 1)]
+        result = find_wrinkles(sheet(np.stack([u, v, sum(pair)]), plane_distance, spacing))
+        counts.append(result.count)
+        dip = 8.0 * np.exp(-0.5 * (0.5 * gap / sigma) ** 2)
+        whole = 4.0 * (1.0 + np.exp(-0.5 * (gap / sigma) ** 2)) if gap > 2.0 * sigma else dip
+        if result.count == 1:
+            assert result.largest_amplitude_mm == pytest.approx(whole, rel=0.06), gap
+        else:
+            assert result.count == 2, gap
+            assert whole - dip < result.largest_amplitude_mm < 1.02 * whole
+    assert counts == sorted(counts)
+    assert counts[:3] == [1, 1, 1]
+    assert counts[-1] == 2
+
+
+@pytest.mark.parametrize("width", [6.0, 10.0, 16.0, 20.0])
+def test_a_fold_that_is_flat_on_top(width):
+    u, v = grid(120, 2.0)
+    result = find_wrinkles(sheet(np.stack([u, v, 4.0 * np.exp(-np.log(2) * (2.0 * v / width) ** 4)]), plane_distance))
+    assert result.count == 1
+    assert result.largest_amplitude_mm == pytest.approx(4.0, rel=0.05)
+    assert result.wrinkles[0].width_mm == pytest.approx(width, rel=0.05)
