@@ -77,7 +77,7 @@ def run_net(
             notes.append(f"pictures are missing: {type(error).__name__}: {error}")
     wall["output"] = clock.perf_counter() - meshed - wall["net"]
     out.write_json("run.json", _info(case, drapes, wall, failures) | dict(more))
-    _report(case, out, tables, wall, notes)
+    _report(case, out, tables, wall, [f"FAILED: {failure}" for failure in failures] + notes)
     if failures:
         raise failures[0]
     return NetResult(wall, tables, notes)
@@ -139,9 +139,12 @@ def net_metrics(drape: Drape, surface: PlySurface, locking_deg: float) -> dict[s
     area = cell_area(surface)
     locked = area[np.abs(shear_angle(surface)) > locking_deg].sum()
     x, y, z = (float(value) for value in drape.start_point)
+    outline = outline_numbers(surface)
+    if drape.failed is not None:  # what is laid has no outline
+        outline = {key: None if isinstance(value, float) else value for key, value in outline.items()}
     return {
         "ply": surface.name,
-        **outline_numbers(surface),
+        **outline,
         **shear_statistics(surface),
         "fibre_strain_min": low,
         "fibre_strain_max": high,

@@ -39,7 +39,12 @@ class Tool(Section):
         description="Which solid (inferred for the published tool: only its height is known)."
     )
     height_mm: float | None = Field(
-        default=None, gt=0, le=2000, description="Height [mm]: tetrahedra (left out: 82), box, cylinder."
+        default=None,
+        gt=0,
+        le=2000,
+        description="Height [mm]: tetrahedra "
+        "(left out: 82; to the sharp apex, of which the fillet takes off (sqrt(3) - 1) fillet_mm from the cube corner "
+        "and 2 fillet_mm from the regular one), box, cylinder.",
     )
     radius_mm: float | None = Field(default=None, gt=0, le=2000, description="Radius [mm]: hemisphere, cylinder.")
     length_mm: float | None = Field(default=None, gt=0, le=5000, description="Length along x before turning [mm]: box.")

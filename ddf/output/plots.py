@@ -69,11 +69,19 @@ def draw_distance(surface: PlySurface, box: Box | None = None) -> Any:
     image = view.nodes(fill_inactive(gap_field(surface), surface.active))
     bar = coloured(figure, axes, view, surface, image, "YlGnBu", DISTANCE_RANGE_MM, "both", INSIDE)
     bar.set_label(
-        "gap to tool and platform [mm]; 0: conforms, red: nearer than the layers between are thick",
+        f"gap to tool and platform [mm], {_range_of(surface)}\n"
+        "0: conforms; less: nearer than what lies between is thick",
         fontsize=figures.LABEL_PT,
     )
     figures.scale_bar(axes, frame)
     return figure
+
+
+def _range_of(surface: PlySurface) -> str:
+    """Least and largest gap of a ply's nodes."""
+    gap = gap_field(surface)[surface.active]
+    gap = gap[np.isfinite(gap)]
+    return f"{gap.min():.2f} to {gap.max():.1f} here" if gap.size else "not known"
 
 
 def draw_outline(surface: PlySurface, result: WrinkleResult | None, tool: TriangleMesh | None = None) -> Any:

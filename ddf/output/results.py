@@ -59,7 +59,10 @@ class FinishedRun:
         return rows
 
     def frames(self, sheet: str) -> list[tuple[float, Path]]:
-        """Time [s] and file of each frame of a sheet (or of "tool")."""
+        """Time [s] and file of each frame of a sheet (or of "tool"). Raises UsageError naming what there is."""
+        there = sorted(file.stem for file in self.path.glob("*.pvd"))
+        if there and sheet not in there:
+            raise UsageError(f"{self.path} has no frames of {sheet!r}", f"there are those of {', '.join(there)}")
         return [(time, self.path / file) for time, file in read_pvd(self._file(f"{sheet}.pvd"))]
 
     def read_frame(self, sheet: str, index: int = -1) -> dict[str, NDArray[Any]]:

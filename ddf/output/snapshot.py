@@ -151,7 +151,10 @@ def _sheet(scene: Scene, state: State, k: int) -> SheetSnapshot:
 
 
 def ply_fields(surface: PlySurface, shear_table: Array) -> dict[str, Array]:
-    """Cell fields of a ply, (n-1, m-1): shear angle, normalised shear force N_s = dW/ds, fibre strains."""
+    """Cell fields of a ply, (n-1, m-1): shear angle, normalised shear force N_s = dW/ds, fibre strains, share of cloth.
+
+    Fibre strains are means of a cell's two edges along the family; the metrics' largest one is that of a single edge.
+    """
     angle = shear_angle(surface)
     first, second = fibre_strain(surface)
     outside = surface.cell_fraction <= 0
@@ -161,6 +164,7 @@ def ply_fields(surface: PlySurface, shear_table: Array) -> dict[str, Array]:
         "normalised_shear_force_N_mm": shear_force(np.radians(angle), shear_table),
         "fibre_strain_1": np.where(outside, 0.0, strain_1),
         "fibre_strain_2": np.where(outside, 0.0, strain_2),
+        "cloth_share": surface.cell_fraction,
     }
 
 

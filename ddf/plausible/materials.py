@@ -10,6 +10,8 @@ from ddf.materials.shear_law import shear_samples
 from ddf.plausible.findings import Findings
 
 FABRIC_KG_M3 = (100.0, 4000.0)
+LEAST_BENDING = 1e-5  # of a solid plate of the fabric's modulus: separate filaments of 5 um in 0.5 mm still have 1e-4
+SHORTEST_TABLE_DEG = 10.0  # a measured shear law goes farther; 90 deg are 1.6 rad
 STRETCHES = np.linspace(1.0, 2.5, 31)  # the range of a forming's diaphragm
 SOFTEST_MPA, STIFFEST_MPA = 0.01, 100.0  # initial shear moduli of rubbers
 
@@ -42,6 +44,15 @@ def examine_materials(case: Case, found: Findings) -> None:
         if max(weave.bending_rigidity_Nmm) > solid:
             problem = f"{max(weave.bending_rigidity_Nmm):g} is more than that of a solid plate of this modulus"
             found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f"<= {solid:.3g}; check the units")
+        if 0.0 < min(weave.bending_rigidity_Nmm) < LEAST_BENDING * solid:
+            problem = (
+                f"{min(weave.bending_rigidity_Nmm):g} is next to nothing: is it in N mm (per mm of width), not N m?"
+            )
+            found.warn(("materials", name, "bending_rigidity_Nmm"), problem, f">= {LEAST_BENDING * solid:.3g}")
+        if weave.shear_table is not None and weave.shear_table.angle_deg[-1] < SHORTEST_TABLE_DEG:
+            end = weave.shear_table.angle_deg[-1]
+            problem = f"the table ends at {end:g} deg, and the law goes on straight; are its angles in radians?"
+            found.warn(("materials", name, "shear_table", "angle_deg"), problem, "degrees, up to 40 or more")
         span = falling_range(weave)
         if span is not None:
             width = "" if weave.in_plane_rigidity > 0.0 else " one element wide"

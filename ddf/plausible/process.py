@@ -14,6 +14,11 @@ STILL_KPA = 1e-6  # pressures closer than this are the same
 ATMOSPHERES_KPA = (20.0, 120.0)  # mount Everest, a deep mine
 FAST_MM_S, IMPOSSIBLE_MM_S = 1.0e4, 1.0e6
 """Tool speeds: beyond the first inertia decides the shape; the second is ten times that of sound in silicone."""
+LEAST_KPA = 1.0  # a difference of pressure that holds or presses something
+LEAST_LIFT = 0.7  # of the tool's height: what it is lifted at least where a stack is to be formed over it
+LONG_S = 2.0
+"""A process longer than this takes hours for nothing: no law depends on rates, only inertia does, and some tenths of a
+second keep that out."""
 STRETCHED, TORN = 2.5, 8.0
 """Mean stretch of the diaphragm between tool and frame: beyond the range of the rubber's tests; torn."""
 
@@ -30,7 +35,32 @@ def examine_process(case: Case, path: LoadPath, found: Findings) -> None:
         problem = f"{path.atmosphere:g} kPa is no atmosphere on earth; is it in kPa?"
         found.warn(("process", "atmosphere_kPa"), problem, f"{low:g} to {high:g}")
     _examine_order(case, path, found)
+    _examine_vacuum(case, path, found)
     _examine_lift(case, path, found)
+    if path.duration > LONG_S:
+        problem = (
+            f"{path.duration:g} s in all: durations are those of the model, in which nothing but inertia depends on "
+            "rates, not those of the shop floor"
+        )
+        found.warn(key, problem, "some tenths of a second in all; see the shipped cases")
+
+
+def _examine_vacuum(case: Case, path: LoadPath, found: Findings) -> None:
+    """What clamps the plies and what presses the stack on the tool is there, and in time."""
+    if case.tool is None or path.lift.max() == 0.0:
+        return
+    key = ("process", "stages" if case.process.breakpoints is None else "breakpoints")
+    if path.box[-1] > path.atmosphere - LEAST_KPA:
+        problem = f"nothing presses the stack on the tool: the box ends at {path.box[-1]:g} kPa, as the air above it"
+        found.warn(key, problem, "a stage that lowers box_pressure_kPa")
+    if path.cavity.min() > path.atmosphere - LEAST_KPA:
+        problem = "nothing clamps the plies between the diaphragms: the cavity stays at atmosphere"
+        found.warn(key, problem, "a first stage that lowers cavity_pressure_kPa")
+        return
+    k = int(np.argmax(path.lift > 0.0))
+    if path.cavity[k] > path.atmosphere - LEAST_KPA:
+        problem = "the tool is lifted before the cavity is evacuated: the plies are not clamped yet"
+        found.warn(_key(case, k, "tool_lift_mm"), problem, "a stage before it that lowers cavity_pressure_kPa")
 
 
 def _examine_order(case: Case, path: LoadPath, found: Findings) -> None:
@@ -65,6 +95,10 @@ def _examine_lift(case: Case, path: LoadPath, found: Findings) -> None:
         found.warn(("tool",), "the tool is never lifted: it only stands below the stack")
     elif case.tool.height_mm is not None and lift > 1.5 * case.tool.height_mm:
         problem = f"{lift:g} lifts the platform far above the frame, past the tool's height of {case.tool.height_mm:g}"
+        found.warn(_key(case, k, "tool_lift_mm"), problem, "about the tool's height")
+    elif lift < LEAST_LIFT * (case.tool.height_mm or case.tool.radius_mm or 0.0):
+        height = case.tool.height_mm or case.tool.radius_mm
+        problem = f"{lift:g} leaves most of a tool that is {height:g} mm high below the frame"
         found.warn(_key(case, k, "tool_lift_mm"), problem, "about the tool's height")
     if radius is not None:
         half = 0.5 * min(case.frame.length_mm, case.frame.width_mm)

@@ -12,6 +12,11 @@ from typing import Any
 from ddf.monitors.audit import Check
 
 
+def percent(value: float) -> str:
+    """Two digits, and no power of ten for what is large."""
+    return f"{value:.2g}" if abs(value) < 99.5 else f"{value:.0f}"
+
+
 @dataclass
 class Progress:
     """What a run tells while it goes on."""
@@ -29,7 +34,7 @@ class Progress:
     def __str__(self) -> str:
         return (
             f"{self.stage:>16}  {self.time_s:8.5f} s  step {self.step}/{self.steps}  dt {self.step_s:.2e} s  "
-            f"energy error {self.energy_error_percent:+.2f} %  kinetic/internal {self.kinetic_percent:.2g} %  "
+            f"energy error {self.energy_error_percent:+.2f} %  kinetic/internal {percent(self.kinetic_percent)} %  "
             f"elapsed {self.elapsed_s:.0f} s  left {self.remaining_s:.0f} s"
         )
 

@@ -50,7 +50,7 @@ def draw_formed_plies(surfaces: list[PlySurface], labels: list[str]) -> Any:
     box = common_box(surfaces)
     columns = min(4, math.ceil(math.sqrt(len(surfaces))))
     lines = math.ceil(len(surfaces) / columns)
-    figure = figures.new_figure(4.0 * columns, 4.1 * lines)
+    figure = figures.new_figure(4.0 * columns, 4.3 * lines)
     for place, (surface, label) in enumerate(zip(surfaces, labels, strict=True), start=1):
         axes = figures.plan_axes(figure, box, "", (lines, columns, place))
         axes.set_title(f"{label} ({surface.name})", fontsize=9, loc="left", color=figures.INK)
@@ -78,7 +78,8 @@ def draw_curves(rows: list[dict[str, Any]], keys: list[str], title: str) -> Any:
             for number, ply in enumerate(plies):
                 colour = figures.COLOURS[number % len(figures.COLOURS)]
                 _curve(axes, [row for row in known if row["ply"] == ply], key, keys, metric, colour, ply)
-            axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))  # a small change should look small
+            low, high = axes.get_ylim()
+            axes.set_ylim(min(0.0, low), high + 0.05 * (high - min(0.0, low)))  # a small change should look small
             axes.grid(color="#e5e8eb", linewidth=0.6)
             axes.tick_params(colors=figures.MUTED, labelsize=8)
             axes.spines[["top", "right"]].set_visible(False)

@@ -70,6 +70,42 @@ WARNINGS = {
         "materials.w.bending_rigidity_Nmm",
         "solid plate",
     ),
+    "rigidity in N m the other way": (
+        COARSE,
+        [WEAVE % "bending_rigidity_Nmm=0.00034", "plies.0.material=w"],
+        "materials.w.bending_rigidity_Nmm",
+        "not N m",
+    ),
+    "angles in radians": (
+        COARSE,
+        [
+            "materials.w={kind='woven', base='plain-weave-6k-320', shear_table={angle_deg=[0.0, 0.35, 0.7, 1.05], "
+            "normalised_shear_force_N_mm=[0.0, 0.02, 0.1, 0.33]}}",
+            "plies.0.material=w",
+        ],
+        "materials.w.shear_table.angle_deg",
+        "radians",
+    ),
+    "no vacuum in the box": (
+        COARSE,
+        ["process.stages.2.box_pressure_kPa=101.325", HOLD + "box_pressure_kPa=101.325"],
+        "process.stages",
+        "nothing presses",
+    ),
+    "no vacuum in the cavity": (
+        COARSE,
+        ["process.stages.0.cavity_pressure_kPa=101.325"],
+        "process.stages",
+        "nothing clamps",
+    ),
+    "lift before the cavity": (
+        COARSE,
+        ["process.stages.0={name='first', duration_s=0.02, tool_lift_mm=20.0}", LIFT + "cavity_pressure_kPa=0.0"],
+        "process.stages.0.tool_lift_mm",
+        "not clamped yet",
+    ),
+    "a lift in cm": (COARSE, [LIFT + "tool_lift_mm=8.2"], LIFT + "tool_lift_mm", "below the frame"),
+    "minutes of process": (COARSE, [HOLD + "duration_s=60.0"], "process.stages", "shop floor"),
     "rubber in kPa": (
         COARSE,
         [RUBBER % "{mu_MPa=960.0, alpha=2.0}", "diaphragms.material=r"],
