@@ -17,6 +17,8 @@ from ddf.metrics.surface import Array, PlySurface, inside_outline
 
 AMPLITUDE, WIDTH, ARC, AREA, SHIFT = range(5)
 METRIC_SMOOTHING_MM = 2.0
+BROAD = 2.0
+"""Thresholds that a fold has to be high which is broad on top: lower ones are as well a ply that is not quite flat."""
 TWIN_MM, DIP = 15.0, 0.4
 """A dip is between two crests of one fold, and no foot, where it is less deep than DIP of what the sheet falls within
 TWIN_MM beyond."""
@@ -42,7 +44,8 @@ def cut_sections(
     """Sections over all points of the ridge lines (k, 2), half-length `reach_mm`.
 
     windows_mm: how far from each line its summits may be. Where that is more than two elements, the line is in the
-    middle of a fold that may have several, and stands for its crest as it is; it has to be above half their height.
+    middle of a fold that may have several, and stands for its crest as it is; it has to be above half their height, and
+    these above BROAD thresholds.
     """
     uv = np.vstack(lines)
     spacing = np.array(surface.spacing)
@@ -67,6 +70,7 @@ def cut_sections(
     middles = np.repeat([width > 2.0 * min(surface.spacing) for width in windows_mm], sizes)
     values[middles, SHIFT] = 0.0
     values[middles & (height[:, count] < 0.5 * values[:, AMPLITUDE])] = 0.0  # between two folds
+    values[middles & (values[:, AMPLITUDE] < BROAD * threshold_mm)] = 0.0
     return Sections(places, samples, height, values, tangent, grid_direction, tilt)
 
 
