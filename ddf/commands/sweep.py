@@ -67,6 +67,8 @@ def sweep(
     click.echo(
         f"{len(result.outcomes)} cases: {computed} computed, {result.reused} reused, {len(result.failed)} failed"
     )
+    for line in result.table:
+        click.echo(line)
     for outcome in result.failed:
         click.echo(f"failed: {outcome.name}: {outcome.reason}")
     for note in result.notes:

@@ -14,7 +14,7 @@ from ddf.sweep.manifest import FAILED, FINISHED, Outcome, SweepFolder
 from ddf.sweep.named import NAMED
 from ddf.sweep.plan import Plan
 from ddf.sweep.runner import Runner, SweepProgress
-from ddf.sweep.table import sweep_rows, swept_keys, write_rows
+from ddf.sweep.table import sweep_rows, swept_keys, table_lines, write_rows
 
 DEFAULT_CASE = "tetrahedron-0-90-coarse"
 DEFAULT_CASES = dict.fromkeys(("friction", "loading"), "tetrahedron-double-coarse")  # sections 3.4, 3.5: of two plies
@@ -28,6 +28,7 @@ class SweepResult:
     outcomes: list[Outcome]
     reused: int  # cases that had finished before
     notes: list[str]
+    table: list[str]  # lines of text
 
     @property
     def failed(self) -> list[Outcome]:
@@ -101,4 +102,4 @@ def run_sweep(
         draw_sweep(place, entries, runner.outcomes, rows, swept_keys(entries), plan.title)
     except (DdfError, ImportError, OSError, RuntimeError, ValueError) as error:
         notes.append(f"pictures are missing: {type(error).__name__}: {error}")
-    return SweepResult(folder, list(runner.outcomes.values()), reused, notes)
+    return SweepResult(folder, list(runner.outcomes.values()), reused, notes, table_lines(rows))

@@ -49,10 +49,42 @@ def sweep_rows(folder: SweepFolder, entries: list[Entry], outcomes: dict[str, Ou
     return rows
 
 
+SHOWN = {
+    "wrinkle_count": "wrinkles", "wrinkle_total_length_mm": "length mm", "wrinkle_largest_amplitude_mm": "highest mm",
+    "wrinkled_area_percent": "wrinkled %", "shear_p95_deg": "95 % of shear below deg", "gap_largest_mm": "gap mm",
+    "locked_area_percent": "locked %", "outline_area_mm2": "outline mm2",
+}  # fmt: skip
+"""Columns of the table for people, and their heads."""
+
+
+def table_lines(rows: list[dict[str, Any]]) -> list[str]:
+    """The rows of what finished as lines of text: case, ply, the metrics that are known, how many checks failed."""
+    done = [row for row in rows if row["state"] == FINISHED]
+    columns = {key: head for key, head in SHOWN.items() if any(row[key] is not None for row in done)}
+    if not columns:
+        return []
+    cells = [["case", "ply", *columns.values(), "checks missed"]]
+    for row in done:
+        values = ["-" if row[key] is None else f"{row[key]:.4g}" if abs(row[key]) < 1e4 else f"{row[key]:.0f}"
+                  for key in columns]  # fmt: skip
+        cells.append([row["case"], row["ply"], *values, str(len([c for c in row["audit_misses"].split("; ") if c]))])
+    widths = [max(len(line[k]) for line in cells) for k in range(len(cells[0]))]
+    return [
+        "  ".join(
+            cell.ljust(width) if k < 2 else cell.rjust(width)
+            for k, (cell, width) in enumerate(zip(line, widths, strict=True))
+        )
+        for line in cells
+    ]
+
+
 def write_rows(folder: SweepFolder, rows: list[dict[str, Any]]) -> None:
-    """Write table.csv."""
+    """Write table.csv; metrics that no case has are left out."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    empty = [key for key in METRICS if all(row[key] is None for row in rows)]
+    writer = csv.DictWriter(
+        text, [key for key in rows[0] if key not in empty], lineterminator="\n", extrasaction="ignore"
+    )
     writer.writeheader()
     for row in rows:
         writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})

@@ -239,3 +239,16 @@ def test_energy_closes_when_a_cell_is_thrown_on_the_tool(height, sideways):
     kept = 0.5 * (mass * v * v).sum() + tool.out[0] + tool.out[1]
     assert start + work == pytest.approx(lost + kept, rel=1e-4)
     assert lost > 0.9 * start
+
+
+def test_points_of_a_stretched_diaphragm_stand_for_what_is_clamped(make_scene):
+    """The tool meets the sheet as it is clamped: areas with the pre-stretch, as of all else that touches it."""
+    model = make_scene(
+        "hemisphere", "diaphragms.pre_stretch=1.2", "diaphragms.element_mm=10", "solver.symmetry=off"
+    ).model
+    sheet = model.sheets[model.tool_sheet]
+    first, n, m = int(sheet["line"]), int(sheet["rows"]), int(sheet["cols"])
+    dx, dy = (model.tool_lines[first:][a:b] for a, b in ((0, n - 1), (n - 1, n + m - 2)))
+    node = int(sheet["node"])
+    assert model.area[node : node + n * m].sum() == pytest.approx(dx.sum() * dy.sum(), rel=1e-12)
+    assert model.tool_lines == pytest.approx(1.2 * model.lines, rel=1e-12)

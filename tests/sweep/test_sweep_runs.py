@@ -70,7 +70,12 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(nets):
     assert done.exit_code == 5, done.output
     assert "3 cases: 2 computed, 0 reused, 1 failed" in done.output
     assert "failed: cannot: ply-1: the net cannot be laid beyond node" in done.output
+    lines = [line.split() for line in done.output.splitlines() if line.startswith(("case ", "small ", "over "))]
+    assert lines[0][:2] == ["case", "ply"]
+    assert "locked" in lines[0]
+    assert [line[:2] for line in lines[1:]] == [["small", "ply-1"], ["over", "ply-1"]]
     rows = {row["case"]: row for row in rows_of(folder / "out" / "table.csv")}
+    assert "wrinkle_count" not in rows["small"]  # a net has none
     assert [rows[name]["state"] for name in ("small", "cannot", "over")] == ["finished", "failed", "finished"]
     assert "cannot be laid" in rows["cannot"]["reason"]
     assert float(rows["over"]["kinematic.offset_mm"]) == 5.0
