@@ -11,7 +11,7 @@ from ddf.build import build_scene
 from ddf.case import case_from_dict
 from ddf.errors import DdfError
 from ddf.metrics import PlySurface, WrinkleResult, find_wrinkles, ply_metrics
-from ddf.monitors.audit import Check, audit, history_checks
+from ddf.monitors.audit import WALL_TIME, Check, audit, history_checks
 from ddf.monitors.energy import Energies, energies
 from ddf.net_run import run_net
 from ddf.output.checkpoint import load_checkpoint
@@ -142,5 +142,7 @@ def rebuild_report(path: Path) -> Path:
         raise DdfError(f"{path} holds an unfinished run, at {time:.5f} s", "finish it with ddf run --resume")
     notes: list[str] = []
     whole = scene.whole()
-    finish_folder(whole, out, energies(whole.model, whole.state), time, notes)
+    checks, _ = finish_folder(whole, out, energies(whole.model, whole.state), time, notes)
+    timed = [check for check in run.info.get("audit", []) if check["name"] == WALL_TIME]  # cannot be measured again
+    out.write_json("run.json", run.info | {"audit": checks + timed})
     return report_of(scene, out, notes)

@@ -15,6 +15,8 @@ from ddf.monitors.stability import fibre_stretch
 from ddf.monitors.zigzag import zigzag_share
 from ddf.scene import Scene
 
+WALL_TIME = "wall time of the steps"
+
 REMEDIES = {
     "kinetic over internal energy": "a longer last stage, or more mass damping in it (process.stages.damping_1_s)",
     "energy balance error": "a smaller solver.step_safety, longer stages; do not use the results as they are",
@@ -34,7 +36,7 @@ REMEDIES = {
     "gap over the tool's apex": "smaller elements; more lift or pressure if it is more than an element",
     "elements across the narrowest wrinkle": "smaller plies.element_mm: sizes of the narrowest wrinkles are coarse",
     "nodes in a zigzag of the grid": "smaller plies.element_mm, longer stages",
-    "wall time of the steps": "a lower rung (target.seconds), more threads",
+    WALL_TIME: "a lower rung (target.seconds), more threads",
 }
 """What to do about a check that is missed."""
 
@@ -215,7 +217,7 @@ def across_check(elements_across: float) -> Check:
 
 def time_check(seconds: float, target: float) -> Check:
     """Whether steps took no longer than was asked for."""
-    return _check("wall time of the steps", seconds, target, "s", "the rung was as quick as it was taken for")
+    return _check(WALL_TIME, seconds, target, "s", "the rung was as quick as it was taken for")
 
 
 def crossing_check(edges: int) -> Check:

@@ -35,6 +35,9 @@ def test_run_settles(formed):
     assert checks["deepest penetration of the tool"]["value"] < 0.5  # 5 mm elements over 5 mm fillets
     assert checks["gap over the tool's apex"]["value"] < 1.2  # the same; 1.0 is asked of finer meshes
     assert checks["energy balance error"]["ok"]
+    assert checks["energy given back by what only takes"]["value"] < 0.01
+    assert checks["taken by waves of the fibres"]["ok"]
+    assert checks["taken by mass damping"]["value"] == pytest.approx(30.0, abs=5.0)
     # at the limit of the audit, 0.3 %, in the bars over the apex: 0.29 to 0.30 with changes of grid, masses and step
     assert checks["largest fibre strain"]["value"] == pytest.approx(0.30, abs=0.03)
 

@@ -5,6 +5,7 @@ import itertools
 import json
 import os
 import re
+import shutil
 import signal
 import time
 from pathlib import Path
@@ -18,6 +19,7 @@ from ddf.case import load_case
 from ddf.cli import main
 from ddf.errors import UsageError
 from ddf.output.results import open_run
+from ddf.postprocess import rebuild_report
 from ddf.run import run_case
 
 SMALL = [
@@ -74,6 +76,18 @@ def test_finished_run_opens_as_arrays(whole, case):
     assert np.isfinite(last["shear_angle_deg"]).all()
     profile = run.profile("ply-1")
     assert np.hypot(profile["x0_mm"], profile["y0_mm"]).max() == pytest.approx(175 * 2**0.5)
+
+
+def test_a_report_made_again_says_what_it_measured(whole, tmp_path):
+    again = tmp_path / "again"
+    shutil.copytree(whole.folder, again)
+    info = json.loads((again / "run.json").read_text())
+    info["audit"] = [info["audit"][0] | {"value": 123.0, "ok": False}]
+    (again / "run.json").write_text(json.dumps(info))
+    rebuild_report(again)
+    audit, metrics = (json.loads((again / name).read_text()) for name in ("run.json", "metrics.json"))
+    assert audit["audit"] == metrics["audit"] == json.loads((whole.folder / "metrics.json").read_text())["audit"]
+    assert "what it says, or what to do" in (again / "report.html").read_text()
 
 
 def test_interrupted_and_resumed_is_the_same_run(whole, case, tmp_path, monkeypatch):
