@@ -144,7 +144,9 @@ class Model(NamedTuple):
     inverse_mass: np.ndarray  # (N,) [1/tonne]; 0 holds a node at its given velocity
     line_mass: np.ndarray  # (N,) the same; below 0 for nodes that do not leave the mirror plane, see `elements.tension`
     area: np.ndarray  # (N,) reference area of a node, for contact [mm2]
-    inverse_area: np.ndarray  # (N,) one over the node's reference area, in a half model the whole's; 0: none [1/mm2]
+    inverse_area: (
+        np.ndarray
+    )  # (N,) one over a node's area in `elements.squeeze`, of the whole in a half; 0: none [1/mm2]
     bar1: np.ndarray
     bar2: np.ndarray
     cell: np.ndarray  # (N,) reference area of the cloth in a cell [mm2]

@@ -20,6 +20,10 @@ around it by their cloth) the corners get
 width on which N acts go with its share of cloth. The power of these forces is what pressure would do on layers that
 thin; mid-surfaces keep their distance in the model, so it is booked as work of its own.
 
+On nodes that the frame holds it takes half of the force, three quarters in its corners. (With all of it the outermost
+cells pushed those within, and where a rising platform pressed on sheets in its gap these were crushed: a random scene
+stopped.)
+
 P is the mean of the contact forces over some fifty steps (SHARE). As they are, the pair of a force in the plane that
 follows the pressure and a pressure that does not follow the area flutters: a flat stack at 2 mm, clamped, gained 10 J.
 """
