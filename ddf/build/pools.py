@@ -43,11 +43,9 @@ def node_pools(stack: Stack, sheets: np.ndarray, masses: list[float], rims: list
             held, exists = np.ones((n, m), bool), np.ones((n, m), bool)
             held[1:-1, 1:-1] = False
         area = values["area"]
-        values["inverse_area"] = np.where(area > 0.0, 1.0 / np.where(area > 0.0, area, 1.0), 0.0)
-        if (
-            s["kind"] == DIAPHRAGM
-        ):  # of what presses on nodes in the frame it takes its part, as cells beyond them would
-            values["inverse_area"] = values["inverse_area"] * corner_sum(np.ones((n - 1, m - 1)))
+        # of what presses on nodes in the frame it takes its part, as cells beyond them would
+        taken = corner_sum(np.ones((n - 1, m - 1))) if s["kind"] == DIAPHRAGM else 1.0
+        values["inverse_area"] = np.where(area > 0.0, taken / np.where(area > 0.0, area, 1.0), 0.0)
         if s["kind"] != DIAPHRAGM:
             area = np.where(area > 0.0, np.maximum(area, LEAST_NODE * s["a1"] * s["a2"]), 0.0)
         mass = masses[k] * area

@@ -18,13 +18,13 @@ from ddf.scene import Scene
 WALL_TIME = "wall time of the steps"
 
 REMEDIES = {
-    "kinetic over internal energy": "a longer last stage, or more mass damping in it (process.stages.damping_1_s)",
+    "kinetic over internal energy": "a longer last stage, or more mass damping in it (process.stages.mass_damping_1_s)",
     "energy balance error": "a smaller solver.step_safety, longer stages; do not use the results as they are",
     "energy given back by what only takes": "a smaller solver.step_safety; do not use the results as they are",
     "taken by waves of the fibres": "longer stages: fibres are jerked",
     "taken by mass damping": "longer stages with less damping; compare the part with one of twice the durations",
     "deepest penetration of the tool": "smaller diaphragms.element_mm, a larger solver.tool_contact_stiffness_N_mm3",
-    "largest fibre strain": "see where (strain_1, strain_2 in the frames): a few bars over an apex are harmless",
+    "largest fibre strain": "see where (fibre_strain_1, _2 in the frames): a few bars over an apex are harmless",
     "added mass": "only a statement where kinetic energies are low; less solver.mass_scaling costs steps",
     "edges of a sheet through itself": "solver.self_contact = true, smaller plies.element_mm; do not trust that fold",
     "edges of layers through each other": "smaller elements: those at the tool's sharpest place are as wide as it",

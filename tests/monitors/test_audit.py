@@ -1,12 +1,14 @@
 """The audit against states made by hand."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ddf.model import sheet_vectors
-from ddf.monitors.audit import history_checks, ply_inside_tool, self_contact
+from ddf.monitors.audit import REMEDIES, history_checks, ply_inside_tool, self_contact
 from ddf.monitors.energy import energies
 from ddf.simulate import Simulation
 
@@ -58,3 +60,16 @@ def test_a_fibre_solver_that_makes_energy_is_found_out(make_scene, spread, seen)
 
 def test_an_empty_history_has_no_checks():
     assert history_checks({"time_s": np.zeros(0)}) == []
+
+
+def test_what_to_do_names_keys_that_there_are():
+    """Every key that a remedy names is one of a case's."""
+    documented = Path("docs/case.md").read_text()
+    keys = {
+        key
+        for text in REMEDIES.values()
+        for key in re.findall(r"\b(?:solver|diaphragms|plies|process|target)\.[\w.]+\w", text)
+    }
+    assert len(keys) > 6
+    for key in keys:
+        assert f"`{key.split('.')[-1]}`" in documented, key
